@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::gains::Gains;
-use crate::recovery::{Choice, IfAlike, Method, Parameter, Recovered, Sum};
+use crate::recovery::{Choice, Method, Parameter, Recovered};
 pub(super) use describe::{chosen_words, words};
 
 /// A parameter, why it is this one, and what a run needs to take the same again.
@@ -60,49 +60,6 @@ pub struct Beside {
     /// Factors that were said to be known roughly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gains: Option<Gains>,
-}
-
-/// What is known of a pattern of two levels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Probable {
-    /// Probability of the pattern that was recovered, its levels exact.
-    pub pattern: f64,
-    /// Probability that the elements do not differ from their levels; 1 where these were given.
-    pub exact: f64,
-    /// The likeliest standard deviation by which they do, if they do.
-    pub spread: f64,
-    /// Means of dark and light level.
-    pub levels: [f64; 2],
-    /// Their standard deviations.
-    pub level_errors: [f64; 2],
-    /// Largest difference of an element's probability between halves of the sampling; absent where
-    /// all patterns were summed.
-    pub disagreement: Option<f64>,
-    /// Whether the probabilities are to be believed.
-    pub converged: bool,
-    /// What they are where neighbours may be alike, the levels exact; absent where that is not
-    /// known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub if_alike: Option<IfAlike>,
-}
-
-impl Probable {
-    /// Of a recovery of two levels.
-    pub fn of(found: &Recovered) -> Option<Self> {
-        found.patterns.as_ref().map(|p| Self {
-            pattern: p.pattern,
-            exact: p.exact,
-            spread: p.spread,
-            levels: p.levels,
-            level_errors: p.level_errors,
-            disagreement: match p.sum {
-                Sum::Exhaustive => None,
-                Sum::Sampled { disagreement, .. } => Some(disagreement),
-            },
-            converged: p.sum.converged(),
-            if_alike: p.if_alike.clone(),
-        })
-    }
 }
 
 impl Chosen {

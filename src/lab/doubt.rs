@@ -176,7 +176,7 @@ fn without_bands(found: &Recovered) -> Option<String> {
 /// Probabilities of patterns that the sampling did not settle.
 fn unsampled(found: &Recovered) -> Option<String> {
     let of = found.patterns.as_ref()?;
-    let Sum::Sampled { disagreement, .. } = of.sum else {
+    let Sum::Sampled { disagreement, .. } = of.assumed().sum else {
         return None;
     };
     (disagreement > Sum::AGREEMENT).then(|| {
@@ -192,10 +192,10 @@ fn unsampled(found: &Recovered) -> Option<String> {
 /// What else may be believed, where it is known.
 fn or_alike(of: &Patterns) -> &'static str {
     match of.if_alike {
-        Some(_) => {
+        Some(_) if !of.settled_if_alike => {
             "; or, if neighbours may be alike, as of a board or a letter, the mean where they are"
         }
-        None => "",
+        _ => "",
     }
 }
 
@@ -216,13 +216,19 @@ fn few_directions(found: &Recovered) -> Option<String> {
 
 /// Two levels where elements that differ from theirs explain the photographs at least as well.
 fn spread(found: &Recovered) -> Option<String> {
-    let of = found.patterns.as_ref().filter(|p| p.exact < UNLIKELY)?;
-    Some(format!(
-        "every pattern being as likely, exactly two reflectances have probability {}: elements that \
+    let of = found.patterns.as_ref()?;
+    let assumed = of.assumed();
+    let beforehand = if of.settled_if_alike {
+        "neighbours being alike"
+    } else {
+        "every pattern being as likely"
+    };
+    (assumed.exact < UNLIKELY).then(|| format!(
+        "{beforehand}, exactly two reflectances have probability {}: elements that \
          differ from theirs by about {} explain the photographs better. Believe the standard errors, not the \
          pattern, or joint-gp{}",
-        figure(of.exact, 2),
-        of.spread,
+        figure(assumed.exact, 2),
+        assumed.spread,
         or_alike(of)
     ))
 }
@@ -241,7 +247,8 @@ fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
     let above = 2.0 * solver.gap / unit;
     // The gap of a pattern is to the best of all numbers; what other patterns could do is known
     // from their probabilities.
-    let known = found.patterns.as_ref().is_some_and(|p| p.sum.converged());
+    let known = found.patterns.as_ref();
+    let known = known.is_some_and(|p| p.assumed().sum.converged());
     (above > GAP && !known).then(|| {
         let cure = match found.method {
             Method::JointTwoValued => "Compare with joint, or give the --levels",

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::num::digits::figure;
-use crate::recovery::{Method, Patterns, Recovered};
+use crate::recovery::{Method, Recovered};
 
 /// Evidences that differ by less, ln, do not tell: a factor of 20.
 const TELLS: f64 = 3.0;
@@ -15,9 +15,7 @@ const TELLS: f64 = 3.0;
 /// patterns that is not to be believed does not. Every error of the model counts as evidence
 /// against both, the stiffer one more.
 pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
-    let believed = |p: &Patterns| p.sum.converged() || p.if_alike.is_some();
-    let believed = |f: &&&Recovered| f.patterns.as_ref().is_none_or(believed);
-    let known = found.iter().filter(believed);
+    let known = found.iter().filter(|found| mean(found).is_some());
     let mut known: Vec<(&Recovered, f64)> =
         known.filter_map(|f| Some((*f, f.log_evidence?))).collect();
     known.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -48,18 +46,18 @@ pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
 fn loss(shown: &Recovered, all: &[(&Recovered, f64)]) -> f64 {
     let best = all.iter().map(|(_, e)| *e).fold(f64::MIN, f64::max);
     let each = all.iter().map(|(by, evidence)| {
-        let mean = by.patterns.as_ref().map_or(&by.reflectance, mean);
-        libm::exp(evidence - best) * (&shown.reflectance - mean).norm_squared()
+        let off = mean(by).map_or(0.0, |mean| (&shown.reflectance - mean).norm_squared());
+        libm::exp(evidence - best) * off
     });
     each.sum()
 }
 
-/// The mean by what the evidence takes for granted: neighbours may be alike, where what that says
-/// is known.
-fn mean(patterns: &Patterns) -> &DVector<f64> {
-    match &patterns.if_alike {
-        Some(alike) => &alike.mean,
-        None => &patterns.mean,
+/// The mean by what the evidence takes for granted; none of a sum over patterns that is not to be
+/// believed.
+fn mean(found: &Recovered) -> Option<&DVector<f64>> {
+    match &found.patterns {
+        Some(patterns) => patterns.believed().map(|patterns| &patterns.mean),
+        None => Some(&found.reflectance),
     }
 }
 

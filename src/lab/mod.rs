@@ -223,7 +223,7 @@ pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
 pub use calibrate::{
     Calibrated, Calibration, CalibrationPlan, Direction, Free, Identified, Profile, Stage, Starts,
 };
-pub use chosen::{Beside, Chosen, Ended, Probable};
+pub use chosen::{Beside, Chosen, Ended};
 pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use eliminated::Eliminated;

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use std::ops::Range;
 
-use super::chosen::{Beside, Chosen, Ended, Probable, words};
+use super::chosen::{Beside, Chosen, Ended, words};
 use super::doubt::doubts;
 use super::fit::{Certainty, Judged};
 use super::likelier::likelier;
@@ -216,13 +216,13 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             light: found
                 .patterns
                 .as_ref()
-                .map(|p| p.light.as_slice()[range.clone()].to_vec()),
+                .map(|p| p.assumed().light.as_slice()[range.clone()].to_vec()),
             alike: found.patterns.as_ref().and_then(|p| {
                 let alike = p.if_alike.as_ref()?;
                 let own = |v: &DVector<f64>| v.as_slice()[range.clone()].to_vec();
                 Some([own(&alike.mean), own(&alike.deviation)])
             }),
-            patterns: Probable::of(found),
+            patterns: found.patterns.clone(),
             bands: found
                 .bands
                 .as_ref()

@@ -24,7 +24,10 @@ pub fn by_trust(objects: &mut [RecoveredObject]) {
             ..Rank::default()
         });
         rank.refuted |= object.fit.as_ref().is_some_and(|fit| !fit.fits);
-        rank.refuted |= object.patterns.as_ref().is_some_and(|p| p.exact < EXACT);
+        rank.refuted |= object
+            .patterns
+            .as_ref()
+            .is_some_and(|p| p.assumed().exact < EXACT);
         rank.impossible |= is_impossible(object);
         rank.warnings = rank.warnings.max(object.warnings.len());
     }
@@ -55,7 +58,10 @@ struct Rank {
 /// How likely its assumption makes the photographs, ln; none where that was summed over patterns
 /// and is not to be believed.
 fn evidence(object: &RecoveredObject) -> Option<f64> {
-    let believed = object.patterns.as_ref().is_none_or(|p| p.converged);
+    let believed = object
+        .patterns
+        .as_ref()
+        .is_none_or(|p| p.believed().is_some());
     object.log_evidence.filter(|_| believed)
 }
 
@@ -72,7 +78,7 @@ mod tests {
     use crate::lab::{Certainty, Noise, recover_objects};
     use crate::model::{Kernel, MatrixModel};
     use crate::num::control::Control;
-    use crate::recovery::{Method, Nuisance, Options};
+    use crate::recovery::{Method, Nuisance, Options, Sum};
 
     /// Of a board of two levels the pattern comes first, then what fits, the possible before the
     /// impossible; what does not fit is last, in its order.
@@ -118,7 +124,13 @@ mod tests {
         assert_eq!(surfaces[0].surface, "a");
         // Probabilities that are not to be believed put no pattern first.
         let mut untold = objects.clone();
-        untold[0].patterns.as_mut().unwrap().converged = false;
+        let patterns = untold[0].patterns.as_mut().unwrap();
+        patterns.if_alike = None;
+        patterns.sum = Sum::Sampled {
+            draws: 1000,
+            listed: 0.5,
+            disagreement: 0.2,
+        };
         untold[0].likelier = None;
         by_trust(&mut untold);
         assert_eq!(untold[0].method, "joint-gp");

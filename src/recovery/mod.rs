@@ -123,7 +123,7 @@ pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
 pub use options::{Options, Rule, Uncertainty, WeightRule};
 pub use outcome::{Choice, Parameter, Recovered, Solver, Weighting};
-pub use patterns::{IfAlike, Patterns, Sum};
+pub use patterns::{Patterns, Sum};
 pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};
 pub use pixelwise::strips::{Strip, recover_strips};

@@ -4,7 +4,7 @@ use crate::lab::gains::{self, Gains};
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::{figure, significant};
 use crate::num::summation::root_mean_square;
-use crate::recovery::{Choice, Estimated, IfAlike, Parameter, Patterns, Recovered, Sum};
+use crate::recovery::{Choice, Estimated, Parameter, Patterns, Recovered, Sum};
 
 /// The regularisation used and why, in words. How likely a pattern is among patterns means nothing
 /// where it does not explain the photographs, so `explains` says whether that is told.
@@ -45,9 +45,66 @@ pub(in crate::lab) fn words(found: &Recovered, explains: bool) -> String {
         + &estimated
 }
 
-/// What is known of a pattern of two levels.
+/// What is known of a pattern of two levels, first by what its picture goes by.
 fn patterns(of: &Patterns) -> String {
-    let how = match of.sum {
+    let assumed = of.assumed();
+    // Levels that were given are taken for the surface's.
+    let exact = if assumed.spread > 0.0 {
+        format!(
+            "; exactly two reflectances have probability {:.3}",
+            assumed.exact
+        )
+    } else {
+        "; if there are two reflectances and no more".to_owned()
+    };
+    let beforehand = if of.settled_if_alike {
+        "neighbours may be alike, as of a board or a letter"
+    } else {
+        "no pattern likelier beforehand than another"
+    };
+    format!(
+        "{exact}, if the scale is right, and {beforehand}, this pattern has probability {:.3}, {}, {} ({})",
+        assumed.pattern,
+        undecided(assumed),
+        levels(assumed),
+        how(assumed.sum)
+    ) + &otherwise(of)
+}
+
+/// What the picture does not go by, where it is known.
+fn otherwise(of: &Patterns) -> String {
+    match &of.if_alike {
+        Some(_) if of.settled_if_alike => {
+            let said = if of.sum.converged() {
+                format!("probability {:.3} and {}", of.pattern, undecided(of))
+            } else {
+                "a probability that too few draws tell".to_owned()
+            };
+            format!("; if no pattern is likelier beforehand than another, it has {said}")
+        }
+        Some(alike) => format!(
+            "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, {}, and the mean of \
+             all patterns, beside it, has a standard error of {} an element (root mean square)",
+            alike.pattern,
+            levels(alike),
+            figure(root_mean_square(alike.deviation.as_slice()), 2)
+        ),
+        None => String::new(),
+    }
+}
+
+fn undecided(of: &Patterns) -> String {
+    let count = of.light.iter().filter(|p| (0.05..=0.95).contains(*p));
+    format!("{} elements are undecided", count.count())
+}
+
+fn levels(of: &Patterns) -> String {
+    let ([dark, light], [dark_error, light_error]) = (of.levels, of.level_errors);
+    format!("levels {dark:.3} ± {dark_error:.3} and {light:.3} ± {light_error:.3}")
+}
+
+fn how(sum: Sum) -> String {
+    match sum {
         Sum::Exhaustive => "of all patterns".to_owned(),
         Sum::Sampled {
             draws,
@@ -57,42 +114,7 @@ fn patterns(of: &Patterns) -> String {
             "{} % of them one by one and the others by {draws} draws, to within {disagreement:.2}",
             significant(100.0 * listed, 2)
         ),
-    };
-    let undecided = of.light.iter().filter(|p| (0.05..=0.95).contains(*p));
-    // Levels that were given are taken for the surface's.
-    let exact = if of.spread > 0.0 {
-        format!(
-            "; exactly two reflectances have probability {:.3}",
-            of.exact
-        )
-    } else {
-        "; if there are two reflectances and no more".to_owned()
-    };
-    format!(
-        "{exact}, if the scale is right, and no pattern likelier beforehand than another, this pattern has \
-         probability {:.3}, {} elements are undecided, levels {:.3} ± {:.3} and {:.3} ± {:.3} ({how})",
-        of.pattern,
-        undecided.count(),
-        of.levels[0],
-        of.level_errors[0],
-        of.levels[1],
-        of.level_errors[1],
-    ) + &of.if_alike.as_ref().map_or(String::new(), if_alike)
-}
-
-/// The same where neighbours may be alike.
-fn if_alike(of: &IfAlike) -> String {
-    format!(
-        "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, the levels are {:.3} ± \
-         {:.3} and {:.3} ± {:.3}, and the mean of all patterns, beside it, has a standard error of {} an element \
-         (root mean square)",
-        of.pattern,
-        of.levels[0],
-        of.level_errors[0],
-        of.levels[1],
-        of.level_errors[1],
-        figure(root_mean_square(of.deviation.as_slice()), 2)
-    )
+    }
 }
 
 /// A parameter and why it is this one, in words; of a method without one the rank.

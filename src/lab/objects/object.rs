@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use crate::lab::chosen::{Beside, Chosen, Ended, Probable};
+use crate::lab::chosen::{Beside, Chosen, Ended};
 use crate::lab::fit::Fit;
 use crate::matrix::Matrix;
+use crate::recovery::Patterns;
 
 /// A recovered hidden surface.
 #[derive(Clone, Debug, Serialize)]
@@ -44,16 +45,17 @@ pub struct RecoveredObject {
     /// them best; absent for methods that do not know.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub log_evidence: Option<f64>,
-    /// Probability of each element to be light, of `joint-two-valued`.
+    /// Probability of each element to be light, of `joint-two-valued`, by what its picture goes by
+    /// ([`Patterns::assumed`]).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<Vec<f64>>,
     /// Mean of each element over all patterns of `joint-two-valued`, where neighbours may be alike,
     /// and the standard deviation about it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alike: Option<[Vec<f64>; 2]>,
-    /// What is known of its pattern and levels.
+    /// What is known of pattern and levels, all surfaces together.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub patterns: Option<Probable>,
+    pub patterns: Option<Patterns>,
     /// Bands around the reflectances, where they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bands: Option<ObjectBands>,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::DVector;
 
-use crate::recovery::{IfAlike, Patterns, Sum};
+use crate::recovery::{Patterns, Sum};
 
 /// Of a mean square, what rounding leaves of a variance.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -18,7 +18,7 @@ pub(super) struct WeighedPatterns {
 
 impl WeighedPatterns {
     /// Probability of a pattern.
-    fn share(&self, light: &[bool]) -> f64 {
+    pub(super) fn share(&self, light: &[bool]) -> f64 {
         self.weights.get(light).copied().unwrap_or(0.0) / self.moments.weight
     }
 
@@ -29,19 +29,6 @@ impl WeighedPatterns {
         };
         let (light, _) = self.weights.iter().max_by(order)?;
         Some((light, self.share(light)))
-    }
-
-    /// What they say, neighbours being alike in them, of the recovered pattern and of the levels.
-    pub(super) fn if_alike(&self, recovered: &[bool]) -> IfAlike {
-        let [mean, deviation] = self.moments.elements();
-        let [levels, level_errors] = self.moments.levels();
-        IfAlike {
-            pattern: self.share(recovered),
-            levels,
-            level_errors,
-            mean,
-            deviation,
-        }
     }
 }
 
@@ -176,6 +163,7 @@ impl Moments {
             log_evidence,
             sum,
             if_alike: None,
+            settled_if_alike: false,
         }
     }
 }

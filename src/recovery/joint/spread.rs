@@ -11,9 +11,9 @@
 //!
 //! > x ~ N(M (ℓ + τ² Rᵀd), τ² M),   M = (1 + τ² RᵀR)⁻¹.
 //!
-//! Beforehand τ = 0 is as likely as all other τ together, of which each up to the largest of
-//! [`SPREADS`] is as likely (Gelman 2006); one of these stands for those that are nearer to it than
-//! to others by their ratio.
+//! Beforehand patterns are as likely as where the levels are exact, and τ = 0 as all other τ
+//! together, of which each up to the largest of [`SPREADS`] is as likely (Gelman 2006); one of
+//! these stands for those that are nearer to it than to others by their ratio.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -137,6 +137,7 @@ fn part(
     let r = rows_times(axes.vt.clone(), &scale);
     let d = along.zip_map(&excess, |d, e| d / e.sqrt());
     let own = PatternLikelihood {
+        alike: likelihood.alike,
         control: likelihood.control,
         ..PatternLikelihood::new(&r, &d, None)
     };

@@ -9,16 +9,16 @@
 //! patterns of few elements ([`super::enumerated`]), of more over the likeliest and by sampling
 //! ([`super::sampled`]), every pattern as likely beforehand. What they are where neighbours may be
 //! alike ([`super::neighbours`]) stands beside them: by the same patterns weighed anew, or, where
-//! these were drawn, by others, drawn by that. Where the levels are not given, they and the
-//! standard errors allow for elements that differ from their level, as far as the photographs do
-//! ([`super::spread`]). How likely the photographs are by two levels, against what other methods
+//! these were drawn, by others, drawn by that. The standard errors are of the assumption that the
+//! picture goes by. Where the levels are not given, these errors and the levels allow for elements
+//! that differ from their level, as far as the photographs do ([`super::spread`]). How likely the photographs are by two levels, against what other methods
 //! assume, takes neighbours to be alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
 use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
-use super::pattern_sums::{Summed, WeighedPatterns};
+use super::pattern_sums::Summed;
 use super::{enumerated, levels, neighbours, pattern_lattice, sampled, scale, spread};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
@@ -66,31 +66,39 @@ fn draws(n: usize) -> usize {
 
 /// Where neighbours may be alike: what the patterns' evidence gains, and the patterns, if known. If
 /// nearly all were summed one by one these are weighed anew. Of such as were drawn the few that
-/// neighbours prefer say nothing: others are drawn, those of `known` listed.
+/// neighbours prefer say nothing: others are drawn, those of `known` listed. `likelihood` has that
+/// prior, if there is one.
 fn where_alike(
     likelihood: &PatternLikelihood<'_>,
-    (grids, known): (&[[usize; 2]], &[Vec<bool>]),
+    known: &[Vec<bool>],
     summed: &Summed,
-) -> Result<(Option<f64>, Option<WeighedPatterns>), RecoveryError> {
-    let prior = neighbours::AlikePrior::new(grids);
+) -> Result<(Option<f64>, Option<Summed>), RecoveryError> {
     let listed = is_listed(summed.sum);
-    if let Some(prior) = prior.as_ref().filter(|_| !listed) {
-        let own = PatternLikelihood {
-            alike: Some(prior),
-            control: likelihood.control,
-            ..PatternLikelihood::new(likelihood.r, likelihood.d, likelihood.given)
-        };
-        let drawn = sampled::sample(&own, known, draws(likelihood.r.ncols()))?;
+    if likelihood.alike.is_some() && !listed {
+        let drawn = sampled::sample(likelihood, known, draws(likelihood.r.ncols()))?;
         if let Some(drawn) = drawn.filter(|drawn| drawn.sum.converged()) {
-            let gained = drawn.log_evidence - summed.log_evidence;
-            return Ok((Some(gained), Some(drawn.patterns)));
+            return Ok((Some(drawn.log_evidence - summed.log_evidence), Some(drawn)));
         }
     }
-    let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.patterns.weights);
+    let reweighed = neighbours::Reweighed::new(likelihood.alike, &summed.patterns.weights);
     let quadrature = levels::rule();
     let of = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-    let anew = listed.then(|| reweighed.sum(of));
-    Ok((reweighed.gained(), anew.flatten()))
+    let anew = listed.then(|| reweighed.sum(of)).flatten();
+    let gained = reweighed.gained();
+    let anew = gained.zip(anew).map(|(gained, patterns)| Summed {
+        patterns,
+        log_evidence: summed.log_evidence + gained,
+        sum: summed.sum,
+        best: summed.best.clone(),
+        drawn: Vec::new(),
+    });
+    Ok((gained, anew))
+}
+
+/// The likeliest pattern where neighbours may be alike, if that is settled.
+fn settled(gained: Option<f64>, alike: Option<&Summed>) -> Option<Vec<bool>> {
+    let (light, share) = alike?.patterns.likeliest()?;
+    (share >= SETTLED && gained >= Some(TELLS)).then(|| light.clone())
 }
 
 pub(in crate::recovery) fn recover(
@@ -160,46 +168,62 @@ pub(in crate::recovery) fn recover(
     if given.is_some() && summed.as_ref().is_some_and(|s| s.sum == Sum::Exhaustive) {
         bound = 0.5 * best.misfit;
     }
+    let prior = summed.as_ref().and(neighbours::AlikePrior::new(grids));
+    let likelihood_if_alike = PatternLikelihood {
+        alike: prior.as_ref(),
+        control: problem.control,
+        ..PatternLikelihood::new(&r, &d, given)
+    };
     let (gained, alike) = match &summed {
         Some(summed) => {
             known.push(best.light.clone());
-            where_alike(&likelihood, (grids, &known), summed)?
+            where_alike(&likelihood_if_alike, &known, summed)?
         }
         None => (None, None),
     };
     let mut status = "no change of one or two elements improves";
-    if let Some((light, share)) = alike.as_ref().and_then(WeighedPatterns::likeliest)
-        && share >= SETTLED
-        && gained >= Some(TELLS)
-    {
-        let found = search.fit(light.clone());
-        if search.can(&found) && found.light != best.light {
-            status = "the likeliest pattern where neighbours are alike";
-            best = found;
-        }
+    let settled = settled(gained, alike.as_ref()).map(|light| search.fit(light));
+    let settled = settled.filter(|found| search.can(found));
+    let settled_if_alike = settled.is_some();
+    if let Some(found) = settled.filter(|found| found.light != best.light) {
+        status = "the likeliest pattern where neighbours are alike";
+        best = found;
     }
     let objective = 0.5 * best.misfit;
     let shown = best.values();
-    let spread = match &summed {
+    let (likelihood, assumed) = if settled_if_alike {
+        (&likelihood_if_alike, alike.as_ref())
+    } else {
+        (&likelihood, summed.as_ref())
+    };
+    let spread = match assumed {
         Some(exact) if given.is_none() && options.spreads => {
-            Some(spread::sum(&likelihood, exact, (&best.light, &shown))?)
+            Some(spread::sum(likelihood, exact, (&best.light, &shown))?)
         }
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
-    let converged = summed.as_ref().filter(|exact| exact.sum.converged());
+    let converged = assumed.filter(|exact| exact.sum.converged());
     recovered.standard_error = converged.map(|exact| match &spread {
         Some(spread) => spread.error.clone(),
         None => exact.patterns.moments.square_about(&shown).map(f64::sqrt),
     });
     recovered.patterns = summed.map(|summed| {
-        let of = summed.finish(&best.light);
+        let own = summed.finish(&best.light);
+        let alike = alike.map(|alike| alike.finish(&best.light));
+        let told = |of: Patterns| match &spread {
+            Some(spread) => spread.finish(of),
+            None => of,
+        };
+        let (own, alike) = if settled_if_alike {
+            (own, alike.map(told))
+        } else {
+            (told(own), alike)
+        };
         Patterns {
-            if_alike: alike.map(|alike| alike.if_alike(&best.light)),
-            ..match spread {
-                Some(spread) => spread.finish(of),
-                None => of,
-            }
+            if_alike: alike.map(Box::new),
+            settled_if_alike,
+            ..own
         }
     });
     let of_patterns = recovered.patterns.as_ref().map(|p| p.log_evidence);

@@ -1,6 +1,7 @@
 //! Against sums over all patterns, chains and expansions.
 
 use super::*;
+use crate::recovery::Sum;
 
 fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
     Reweighed::new(AlikePrior::new(grids).as_ref(), weights).gained()
@@ -91,7 +92,10 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     let weights: HashMap<Vec<bool>, f64> = (0..512).map(|at| (of(at), weight(at))).collect();
     let (prior, recovered) = (AlikePrior::new(&[[3, 3]]), of(0b111));
     let found = Reweighed::new(prior.as_ref(), &weights).sum(|light| Some(levels(light)));
-    let found = found.unwrap().if_alike(&recovered);
+    let found = found.unwrap();
+    let found = found
+        .moments
+        .finish(found.share(&recovered), 0.0, Sum::Exhaustive);
     let (mut whole, mut own, mut sums) = (0.0, 0.0, [[0.0; 2]; 2]);
     for k in 0..11 {
         let beta = 0.1 * f64::from(k);

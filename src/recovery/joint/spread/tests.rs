@@ -1,3 +1,4 @@
+use super::super::neighbours::AlikePrior;
 use super::*;
 use crate::num::quadrature::Rule;
 use crate::recovery::bench::normal_stream;
@@ -7,9 +8,32 @@ use nalgebra::DMatrix;
 const BEFOREHAND: [f64; 5] = [0.018_257, 0.039_478, 0.124_839, 0.394_776, 0.422_650];
 const SHOWN: [f64; 4] = [0.2, 0.8, 0.2, 0.8];
 
-/// ln of 2 ∫∫ N(d; R ℓ, 1 + τ² R Rᵀ) da db/2⁴ over all patterns, but for (2π)⁻²; and E (x −
+/// P(s) of the patterns of 2 × 2 elements where neighbours may be alike, by all patterns.
+fn if_alike() -> [f64; 16] {
+    let bonds = |s: usize| -> f64 {
+        let each = [(0, 1), (2, 3), (0, 2), (1, 3)];
+        let one = |(a, b): (usize, usize)| if s >> a & 1 == s >> b & 1 { 1.0 } else { -1.0 };
+        each.map(one).iter().sum()
+    };
+    let mut all = [0.0; 16];
+    for k in 0..11 {
+        let own = |s: usize| libm::exp(0.1 * f64::from(k) * bonds(s));
+        let z: f64 = (1..15).map(own).sum();
+        for s in 1..15 {
+            all[s] += own(s) / z / 11.0;
+        }
+    }
+    all
+}
+
+/// ln of Σ P(s) 2 ∫∫ N(d; R ℓ, 1 + τ² R Rᵀ) da db over all patterns s, but for (2π)⁻²; and E (x −
 /// shown)², by Gauss–Legendre on 60 × 60 levels and inverses of whole matrices.
-fn by_hand(r: &DMatrix<f64>, d: &DVector<f64>, tau: f64) -> (f64, DVector<f64>) {
+fn by_hand(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    tau: f64,
+    beforehand: &[f64; 16],
+) -> (f64, DVector<f64>) {
     let one = DMatrix::<f64>::identity(4, 4);
     let covariance = &one + r * r.transpose() * (tau * tau);
     let det = covariance.determinant();
@@ -18,13 +42,13 @@ fn by_hand(r: &DMatrix<f64>, d: &DVector<f64>, tau: f64) -> (f64, DVector<f64>) 
     let variance = (&one - &gain * r) * (tau * tau);
     let rule = Rule::gauss_legendre(60);
     let (mut sum, mut square) = (0.0, DVector::zeros(4));
-    for pattern in 0..16usize {
+    for (pattern, share) in beforehand.iter().enumerate() {
         for (a, wa) in rule.on(0.0, 1.0) {
             for (b, wb) in rule.on(a, 1.0) {
                 let level = DVector::from_fn(4, |j, _| if pattern >> j & 1 == 1 { b } else { a });
                 let left = d - r * &level;
                 let log = -0.5 * left.dot(&(&inverse * &left)) - 0.5 * libm::log(det);
-                let weight = 2.0 * wa * wb / 16.0 * libm::exp(log);
+                let weight = 2.0 * wa * wb * share * libm::exp(log);
                 let x = &level + &gain * &left;
                 sum += weight;
                 let off = |j: usize| (x[j] - SHOWN[j]).powi(2) + variance[(j, j)];
@@ -36,44 +60,51 @@ fn by_hand(r: &DMatrix<f64>, d: &DVector<f64>, tau: f64) -> (f64, DVector<f64>) 
 }
 
 /// Elements exactly on two levels and elements that are not: the probability of exact levels and
-/// the errors are those of the whole sums.
+/// the errors are those of the whole sums, every pattern as likely or neighbours alike.
 #[test]
 fn errors_are_those_of_all_patterns_levels_and_spreads() {
     let mut normal = normal_stream(3);
     let mixing = DMatrix::from_fn(4, 4, |_, _| normal());
+    let prior = AlikePrior::new(&[[2, 2]]);
     for (truth, noise) in [
         ([0.2, 0.8, 0.2, 0.8], 0.05),
         ([0.1, 0.7, 0.3, 0.9], 0.05),
         ([0.2, 0.8, 0.2, 0.8], 0.5),
+        ([0.2, 0.2, 0.8, 0.8], 0.8),
     ] {
         let r = &mixing / noise;
         let d = &r * DVector::from_row_slice(&truth) + DVector::from_fn(4, |_, _| normal());
         let shown = DVector::from_row_slice(&SHOWN);
-        let likelihood = PatternLikelihood::new(&r, &d, None);
         let light = [false, true, false, true];
-        let exact = sampled::sample(&likelihood, &[light.to_vec()], 4000)
-            .unwrap()
-            .unwrap();
-        let found = sum(&likelihood, &exact, (&light, &shown)).unwrap();
-        let parts = SPREADS.map(|tau| by_hand(&r, &d, tau));
-        let own = by_hand(&r, &d, 0.0);
-        let others: Vec<f64> = parts
-            .iter()
-            .zip(BEFOREHAND)
-            .map(|((log, _), before)| before * libm::exp(log - own.0))
-            .collect();
-        let all = 1.0 + others.iter().sum::<f64>();
-        let mut square = own.1 / all;
-        for ((_, of), weight) in parts.iter().zip(&others) {
-            square += of * (weight / all);
-        }
-        let told = format!("{truth:?} {noise}: {} {}", found.exact, all.recip());
-        assert!((found.exact - all.recip()).abs() < 0.03, "{told}");
-        for (own, expected) in found.error.iter().zip(square.iter()) {
-            assert!(
-                (own / expected.sqrt() - 1.0).abs() < 0.1,
-                "{told} {own} {expected}"
-            );
+        for (alike, beforehand) in [(None, [1.0 / 16.0; 16]), (prior.as_ref(), if_alike())] {
+            let likelihood = PatternLikelihood {
+                alike,
+                ..PatternLikelihood::new(&r, &d, None)
+            };
+            let exact = sampled::sample(&likelihood, &[light.to_vec()], 4000)
+                .unwrap()
+                .unwrap();
+            let found = sum(&likelihood, &exact, (&light, &shown)).unwrap();
+            let parts = SPREADS.map(|tau| by_hand(&r, &d, tau, &beforehand));
+            let own = by_hand(&r, &d, 0.0, &beforehand);
+            let others: Vec<f64> = parts
+                .iter()
+                .zip(BEFOREHAND)
+                .map(|((log, _), before)| before * libm::exp(log - own.0))
+                .collect();
+            let all = 1.0 + others.iter().sum::<f64>();
+            let mut square = own.1 / all;
+            for ((_, of), weight) in parts.iter().zip(&others) {
+                square += of * (weight / all);
+            }
+            let told = format!("{truth:?} {noise}: {} {}", found.exact, all.recip());
+            assert!((found.exact - all.recip()).abs() < 0.03, "{told}");
+            for (own, expected) in found.error.iter().zip(square.iter()) {
+                assert!(
+                    (own / expected.sqrt() - 1.0).abs() < 0.1,
+                    "{told} {own} {expected}"
+                );
+            }
         }
     }
 }

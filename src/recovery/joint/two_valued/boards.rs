@@ -27,14 +27,16 @@ struct Count {
 
 /// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least
 /// as well as what made the photographs, and the levels where neighbours may be alike are within
-/// three of their standard errors; that of 2 × 2 fields is found as it is. Where every pattern is
-/// as likely the levels 0.1 and 0.6 are so in 36 of 40 draws at a noise of 5.5e-3: it is none of
-/// chance.
+/// three of their standard errors; that of 2 × 2 fields is found as it is. Pictures that are
+/// settled there are within four of their standard errors, and right as often as said. Where every
+/// pattern is as likely the levels 0.1 and 0.6 are so in 36 of 40 draws at a noise of 5.5e-3: it is
+/// none of chance.
 #[test]
 #[ignore = "slow"]
 fn the_search_reaches_what_made_the_photographs() {
     let bench = Bench::new(6.0, 8, 16);
     let mut short = Vec::new();
+    let mut settled = [0.0; 2];
     for (k, levels) in [
         (2, [0.2, 0.8]),
         (2, [0.1, 0.6]),
@@ -64,6 +66,14 @@ fn the_search_reaches_what_made_the_photographs() {
                     let near = |k: usize| (found[k] - levels[k]).abs() <= 3.0 * errors[k];
                     u64::from(near(0) && near(1))
                 };
+                if patterns.settled_if_alike {
+                    let error = found.standard_error.unwrap();
+                    let off = (&found.reflectance - &truth).component_div(&error);
+                    assert!(off.amax() < 4.0, "{k} {levels:?} {noise} {seed}: {off}");
+                    let probability = patterns.assumed().pattern;
+                    settled[0] += f64::from(u8::from(same)) - probability;
+                    settled[1] += probability * (1.0 - probability);
+                }
                 if patterns.sum.converged() {
                     count.stated += 1;
                     count.levels += within(patterns.levels, patterns.level_errors);
@@ -91,6 +101,8 @@ fn the_search_reaches_what_made_the_photographs() {
         }
     }
     assert!(short.is_empty(), "{short:?}");
+    let [more, variance] = settled;
+    assert!(more > -4.0 * variance.sqrt() - 0.5, "{settled:?}");
 }
 
 /// Random pictures of 4 × 4 elements, levels known and not: the marginals of the sampler, called
@@ -137,12 +149,13 @@ fn sampled_marginals_are_those_of_all_patterns() {
                 let of = |light: &[bool]| Some(likelihood.weigh(light, &rule, ALL)?.levels);
                 let gained = drawn.log_evidence - exact.log_evidence;
                 alike = alike.max((gained - anew.gained().unwrap()).abs());
-                let found = drawn.patterns.if_alike(&light);
+                let found = drawn.finish(&light);
                 // Of none where too many patterns are likely.
                 let Some(expected) = anew.sum(of) else {
                     continue;
                 };
-                let expected = expected.if_alike(&light);
+                let share = expected.share(&light);
+                let expected = expected.moments.finish(share, 0.0, Sum::Exhaustive);
                 compared += 1;
                 let [x, y] = [&found, &expected].map(|of| (of.levels, of.level_errors));
                 let off = (0..2).flat_map(|k| [x.0[k] - y.0[k], x.1[k] - y.1[k]]);
