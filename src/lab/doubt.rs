@@ -24,6 +24,8 @@ const GAP: f64 = 0.1;
 
 /// A probability below which exactly two reflectances are not to be taken for granted.
 const UNLIKELY: f64 = 0.5;
+/// A probability below which a pattern is one of many.
+const ONE_OF_MANY: f64 = 0.05;
 /// A share of an element below which the photographs do not determine it.
 const DETERMINED: f64 = 0.9;
 
@@ -45,6 +47,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         without_bands(found),
         unsampled(found),
         spread(found),
+        one_of_many(found),
     ];
     every.into_iter().flatten().collect()
 }
@@ -231,6 +234,21 @@ fn spread(found: &Recovered) -> Option<String> {
         assumed.spread,
         or_alike(of)
     ))
+}
+
+/// A pattern that others explain the photographs as well as.
+fn one_of_many(found: &Recovered) -> Option<String> {
+    let of = found.patterns.as_ref()?;
+    let assumed = of.assumed();
+    let told = assumed.sum.converged() && assumed.exact >= UNLIKELY;
+    (told && assumed.pattern < ONE_OF_MANY).then(|| {
+        format!(
+            "its pattern has probability {}: it is one of many that explain the photographs. Believe \
+             the probability of each element and the standard errors, or joint-gp{}",
+            figure(assumed.pattern, 2),
+            or_alike(of)
+        )
+    })
 }
 
 /// An iteration that ended away from its minimum by what can be seen in the picture.

@@ -85,9 +85,9 @@ pub struct Patterns {
     /// How it was found.
     #[serde(flatten)]
     pub sum: Sum,
-    /// The same where neighbours are alike by an unknown degree beforehand, as those of a board or
-    /// a letter are and those of a fair coin for each element are not. None where that is not
-    /// known.
+    /// The same where fields of one element or of 2 × 2 are alike by an unknown degree beforehand,
+    /// as those of a board or a letter are and those of a fair coin for each element are not. None
+    /// where that is not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub if_alike: Option<Box<Self>>,
     /// Whether the picture goes by `if_alike`: it is the likeliest pattern there, and settled. Its

@@ -189,7 +189,7 @@ fn greys_about_two_levels_are_told_from_two_levels() {
                 Control::none(),
             );
             let found = &found[0].outcome.as_ref().unwrap()[0];
-            let exact = found.patterns.as_ref().unwrap().exact;
+            let exact = found.patterns.as_ref().unwrap().assumed().exact;
             let told = found
                 .warnings
                 .iter()
@@ -201,6 +201,38 @@ fn greys_about_two_levels_are_told_from_two_levels() {
                 assert!(z.abs() < 4.0, "{grey} {seed} {j}: {z}");
             }
         }
+    }
+}
+
+/// Little noise leaves one pattern; more of it leaves many, and the one that is shown says so.
+#[test]
+fn a_pattern_that_is_one_of_many_says_so() {
+    let mut model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+    model.albedo = (0..16)
+        .map(|j: usize| if (j * 7 + j / 4) % 3 == 1 { 0.8 } else { 0.2 })
+        .collect();
+    let options = Options {
+        levels: Some([0.2, 0.8]),
+        ..Options::default()
+    };
+    for (level, many) in [(1e-4, false), (0.3, true)] {
+        let of = Photographs::relative(&model.phi(), level, 5);
+        let found = recover_objects(
+            &model,
+            &of.phi,
+            Noise::StandardError(&of.stderr, Certainty::STATED),
+            Nuisance::default(),
+            &[Method::JointTwoValued],
+            &options,
+            Control::none(),
+        );
+        let found = &found[0].outcome.as_ref().unwrap()[0];
+        let told = found.warnings.iter().any(|w| w.contains("one of many"));
+        assert_eq!(
+            told, many,
+            "{level}: {:?} {:?}",
+            found.patterns, found.warnings
+        );
     }
 }
 

@@ -19,8 +19,8 @@ pub(super) fn can(likelihood: &PatternLikelihood<'_>) -> bool {
     likelihood.r.ncols() <= MOST[usize::from(likelihood.given.is_none())]
 }
 
-/// The sum over all 2ⁿ patterns; the best is the likeliest: of given levels that of the least χ²,
-/// of others that of the largest weight over all levels.
+/// The sum over all 2ⁿ patterns, those that are likely beforehand the more; the best is the
+/// likeliest: of given levels and even patterns that of the least χ².
 pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
     let n = likelihood.r.ncols();
     // ln weights by pattern number, pattern after pattern by one element (Gray).
@@ -29,6 +29,10 @@ pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
     let quadrature = rule();
     let mut weights: Vec<(usize, Weighed)> = Vec::new();
     let mut top = f64::NEG_INFINITY;
+    let pattern = |at: usize| -> Vec<bool> { (0..n).map(|j| at >> j & 1 == 1).collect() };
+    let all = n as f64 * std::f64::consts::LN_2;
+    // A pattern is likelier beforehand than of fair coins by 2ⁿ at most.
+    let more = likelihood.alike.map_or(0.0, |_| all);
     for step in 0..1usize << n {
         if step > 0 {
             let j = step.trailing_zeros() as usize;
@@ -36,19 +40,22 @@ pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
             let sign = if at >> j & 1 == 1 { 1.0 } else { -1.0 };
             lit.axpy(sign, &likelihood.r.column(j), 1.0);
             if step % 256 == 0 {
-                let light: Vec<bool> = (0..n).map(|j| at >> j & 1 == 1).collect();
-                lit = likelihood.lit(&light);
+                lit = likelihood.lit(&pattern(at));
             }
         }
         let count = at.count_ones() as usize;
-        let found = likelihood.weigh_lit((&lit, count), &quadrature, ALL, top - NEGLIGIBLE);
-        if let Some(found) = found {
-            top = top.max(found.log);
-            weights.push((at, found));
-        }
+        let least = top - NEGLIGIBLE - more;
+        let Some(mut found) = likelihood.weigh_lit((&lit, count), &quadrature, ALL, least) else {
+            continue;
+        };
+        let Some(beforehand) = likelihood.beforehand(&pattern(at)) else {
+            continue;
+        };
+        found.log += beforehand;
+        top = top.max(found.log);
+        weights.push((at, found));
     }
     weights.retain(|w| w.1.log > top - NEGLIGIBLE);
-    let pattern = |at: usize| -> Vec<bool> { (0..n).map(|j| at >> j & 1 == 1).collect() };
     let mut moments = Moments::new(n);
     let mut shares = HashMap::new();
     let mut best = (0, f64::NEG_INFINITY);
@@ -60,7 +67,6 @@ pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
             best = (at, found.log);
         }
     }
-    let all = n as f64 * std::f64::consts::LN_2;
     Summed {
         log_evidence: top + libm::log(moments.weight) - all,
         patterns: WeighedPatterns {
@@ -69,6 +75,5 @@ pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
         },
         sum: Sum::Exhaustive,
         best: pattern(best.0),
-        drawn: Vec::new(),
     }
 }

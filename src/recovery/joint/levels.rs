@@ -85,6 +85,7 @@ impl LevelFit {
     pub(super) fn weight(&self, rule: &Rule, [least, most]: [f64; 2]) -> Option<Weight> {
         let [uu, uw, ww] = self.curvature;
         let (sa, sb) = ((ww / self.determinant()).sqrt(), ww.sqrt().recip());
+        let log_all = libm::log(sb * (2.0 * std::f64::consts::PI).sqrt());
         // ln ∫ exp(−½ χ²) db at a, and the moments of b there.
         let at = |a: f64| {
             let middle = self.best[1] - uw / ww * (a - self.best[0]);
@@ -92,13 +93,17 @@ impl LevelFit {
             if x >= y {
                 return None;
             }
+            let z = (a - self.best[0]) / sa;
+            let own = -0.5 * (self.chi2 + z * z) + log_all;
+            // All of it, to rounding.
+            if x < -REACH && y > REACH {
+                return Some((own, middle, middle * middle + sb * sb));
+            }
             let share = between(x, y);
             if share <= 0.0 {
                 return None;
             }
-            let z = (a - self.best[0]) / sa;
-            let log = -0.5 * (self.chi2 + z * z)
-                + libm::log(share * sb * (2.0 * std::f64::consts::PI).sqrt());
+            let log = own + libm::log(share);
             let density = |z: f64| libm::exp(-0.5 * z * z) / (2.0 * std::f64::consts::PI).sqrt();
             let (dx, dy) = (density(x), density(y));
             let mean = middle + sb * (dx - dy) / share;

@@ -11,6 +11,7 @@ mod elimination;
 mod enumerated;
 mod error_field;
 mod exponential;
+mod fields;
 pub(super) mod gauss_newton;
 mod gaussian_process;
 mod gram;

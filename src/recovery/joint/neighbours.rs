@@ -33,6 +33,8 @@ pub(super) struct AlikePrior {
     pub(super) pairs: Vec<[usize; 2]>,
     /// Each β, with ln of 2ⁿ/Z over the number of β.
     couplings: Vec<(f64, f64)>,
+    /// ln of P(s)/2⁻ⁿ by Σ s_i s_j, from its least value on.
+    sums: Vec<f64>,
 }
 
 impl AlikePrior {
@@ -44,7 +46,7 @@ impl AlikePrior {
         let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
         let pairs = pairs(grids);
         let fair = n as f64 * std::f64::consts::LN_2 - libm::log(f64::from(COUPLINGS));
-        let couplings = (0..COUPLINGS)
+        let couplings: Vec<(f64, f64)> = (0..COUPLINGS)
             .into_par_iter()
             .map(|k| {
                 let beta = f64::from(k) / f64::from(COUPLINGS - 1);
@@ -53,7 +55,17 @@ impl AlikePrior {
                 (beta, fair - z - libm::log1p(-libm::exp(one - z)))
             })
             .collect();
-        Some(Self { pairs, couplings })
+        let most = pairs.len() as i64;
+        let sum = |alike: i64| {
+            let of = |(beta, rest): &(f64, f64)| beta * alike as f64 + rest;
+            log_sum_exp(&couplings.iter().map(of).collect::<Vec<f64>>())
+        };
+        let sums = (-most..=most).map(sum).collect();
+        Some(Self {
+            pairs,
+            couplings,
+            sums,
+        })
     }
 
     /// ln of P(s | β)/2⁻ⁿ over the number of β, for each β; none of a pattern of one level.
@@ -69,8 +81,9 @@ impl AlikePrior {
 
     /// ln of P(s)/2⁻ⁿ; none of a pattern of one level.
     pub(super) fn log(&self, light: &[bool]) -> Option<f64> {
-        let logs: Vec<f64> = self.logs(light)?.collect();
-        Some(log_sum_exp(&logs))
+        let both = light.contains(&true) && light.contains(&false);
+        let at = alike(&self.pairs, light) + self.pairs.len() as i64;
+        both.then(|| self.sums[at as usize])
     }
 
     /// E β of the likeliest of some patterns, each with ln of its weight, P(s) in it; 0 of none.

@@ -60,6 +60,11 @@ impl Weighed {
 }
 
 impl PatternLikelihood<'_> {
+    /// ln of how much likelier a pattern is beforehand than of fair coins; none where it cannot be.
+    pub(super) fn beforehand(&self, light: &[bool]) -> Option<f64> {
+        self.alike.map_or(Some(0.0), |prior| prior.log(light))
+    }
+
     /// A pattern's weight over levels that differ by these contrasts, where they are not given;
     /// none where levels are not told apart or none can be.
     pub(super) fn weigh(
@@ -68,7 +73,7 @@ impl PatternLikelihood<'_> {
         rule: &Rule,
         contrasts: [f64; 2],
     ) -> Option<Weighed> {
-        let beforehand = self.alike.map_or(Some(0.0), |prior| prior.log(light))?;
+        let beforehand = self.beforehand(light)?;
         let count = light.iter().filter(|light| **light).count();
         let lit = (&self.lit(light), count);
         let weighed = self.weigh_lit(lit, rule, contrasts, f64::NEG_INFINITY)?;

@@ -39,8 +39,6 @@ pub(super) struct Summed {
     pub(super) sum: Sum,
     /// The best that was met.
     pub(super) best: Vec<bool>,
-    /// Some that were met, with their weights and levels; none where all were summed.
-    pub(super) drawn: Vec<(f64, Vec<bool>, [f64; 2])>,
 }
 
 impl Summed {
@@ -102,6 +100,18 @@ impl Moments {
             }
         }
         sum
+    }
+
+    /// Of elements, each `of` one of these.
+    pub(super) fn of_elements(&self, of: &[usize]) -> Self {
+        let each = |own: &DVector<f64>| DVector::from_fn(of.len(), |j, _| own[of[j]]);
+        Self {
+            weight: self.weight,
+            light: each(&self.light),
+            mean: each(&self.mean),
+            square: each(&self.square),
+            levels: self.levels,
+        }
     }
 
     /// All of it times a factor.

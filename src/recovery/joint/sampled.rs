@@ -17,12 +17,11 @@ use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::DVector;
 
-use super::levels::{ALL, LevelFit, possible, rule};
+use super::levels::{ALL, rule};
 use super::pattern_lattice::{Dark, PatternLattice};
 use super::pattern_likelihood::{PatternLikelihood, Weighed};
 use super::pattern_sums::{Moments, Summed, WeighedPatterns};
 use super::sampler::{List, Met, Sampler, Side, counts, effective};
-use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::{RecoveryError, Sum};
 
 /// Of the weight that lets a third of all draws be patterns, those of the two lattices.
@@ -38,10 +37,6 @@ const MOST_FINE: usize = 300;
 pub(super) const MOST_LATTICES: usize = MOST_FINE + 200;
 /// Share of the draws by which the others are distributed over the cells.
 const FIRST: f64 = 0.2;
-/// Patterns with their levels that are drawn from all that were met, and tries to draw possible
-/// levels.
-const DRAWN: usize = 200;
-const TRIES: usize = 100;
 
 /// The sum over patterns by so many draws; `known` ones are listed. `None` where the lattices are
 /// beyond double precision.
@@ -142,7 +137,7 @@ pub(super) fn sample(
         missed,
         draws,
     };
-    Ok(known.together(likelihood, &sampler.list))
+    Ok(known.together(n, &sampler.list))
 }
 
 /// What is known beside the list.
@@ -158,8 +153,7 @@ struct Known {
 
 impl Known {
     /// List and draws as one; none where no pattern is possible.
-    fn together(self, likelihood: &PatternLikelihood<'_>, list: &List) -> Option<Summed> {
-        let n = likelihood.r.ncols();
+    fn together(self, n: usize, list: &List) -> Option<Summed> {
         let drawn = self.met.iter().flatten().map(|met| met.log);
         let logs = list.values().map(|weighed| weighed.log).chain(drawn);
         let top = logs.fold(f64::NEG_INFINITY, f64::max);
@@ -215,7 +209,6 @@ impl Known {
         let error = 2.0 * variance.max().sqrt();
         Some(Summed {
             log_evidence: top + libm::log(moments.weight) - n as f64 * std::f64::consts::LN_2,
-            drawn: resampled(likelihood, &weights, moments.weight),
             patterns: WeighedPatterns {
                 weights: weights.into_iter().collect::<HashMap<_, _>>(),
                 moments,
@@ -228,47 +221,4 @@ impl Known {
             best: best.1,
         })
     }
-}
-
-/// Patterns in proportion to their weights, with levels of each.
-fn resampled(
-    likelihood: &PatternLikelihood<'_>,
-    weights: &BTreeMap<Vec<bool>, f64>,
-    all: f64,
-) -> Vec<(f64, Vec<bool>, [f64; 2])> {
-    let key = Key {
-        seed: 3,
-        spot: 0,
-        pixel: 0,
-        block: 0,
-    };
-    let random = &mut Stream::new(Sampling::Pcg, key);
-    let step = all / DRAWN as f64;
-    let mut next = random.uniform() * step;
-    let mut drawn = Vec::with_capacity(DRAWN);
-    for (light, weight) in weights {
-        next -= weight;
-        while next < 0.0 {
-            if let Some(levels) = levels(likelihood, light, random) {
-                drawn.push((1.0, light.clone(), levels));
-            }
-            next += step;
-        }
-    }
-    drawn
-}
-
-/// Levels of a pattern, as likely as they are.
-fn levels(
-    likelihood: &PatternLikelihood<'_>,
-    light: &[bool],
-    random: &mut Stream,
-) -> Option<[f64; 2]> {
-    if likelihood.given.is_some() {
-        return likelihood.given;
-    }
-    let lit = likelihood.lit(light);
-    let fit = LevelFit::new(likelihood.d, &(&likelihood.all - &lit), &lit)?;
-    let mut tries = (0..TRIES).map(|_| fit.draw([random.normal(), random.normal()]));
-    tries.find(|levels| possible(*levels))
 }

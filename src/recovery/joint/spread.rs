@@ -18,10 +18,12 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
+use super::fields::{self, Fields};
+use super::levels::{LevelFit, possible};
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_sums::{Moments, Summed};
-use super::sampled;
 use crate::num::linalg::{Svd, rows_times, svd};
+use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::Patterns;
 use crate::recovery::RecoveryError;
 
@@ -29,6 +31,10 @@ use crate::recovery::RecoveryError;
 const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
 /// Patterns that are drawn for one of them.
 const DRAWS: usize = 16_000;
+/// Patterns with their levels that are drawn from all that were met, and tries to draw possible
+/// levels.
+const DRAWN: usize = 200;
+const TRIES: usize = 100;
 
 /// How likely each of [`SPREADS`] is beforehand, together 1.
 pub(super) fn beforehand() -> [f64; SPREADS.len()] {
@@ -74,16 +80,16 @@ struct Part {
 }
 
 /// Of a picture of two levels that are not given, its pattern and its values; `exact` are the sums
-/// where the levels are exact.
+/// over patterns of these fields where the levels are exact.
 pub(super) fn sum(
     likelihood: &PatternLikelihood<'_>,
-    exact: &Summed,
+    (sizes, exact): (&[Fields], &Summed),
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Spread, RecoveryError> {
     let axes = svd(likelihood.r)?;
     let parts: Result<Vec<Option<Part>>, RecoveryError> = SPREADS
         .par_iter()
-        .map(|tau| part(likelihood, &axes, *tau, (light, shown)))
+        .map(|tau| part(likelihood, sizes, (&axes, *tau), (light, shown)))
         .collect();
     let parts: Vec<(f64, f64, Part)> = SPREADS
         .into_iter()
@@ -125,8 +131,8 @@ pub(super) fn sum(
 /// L⁻¹R is s vᵀ/√e, and x of levels ℓ is ℓ + V (τ² s/e)(Uᵀd − S Vᵀℓ) on average.
 fn part(
     likelihood: &PatternLikelihood<'_>,
-    axes: &Svd,
-    tau: f64,
+    sizes: &[Fields],
+    (axes, tau): (&Svd, f64),
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Option<Part>, RecoveryError> {
     let s = &axes.sigma;
@@ -137,23 +143,23 @@ fn part(
     let r = rows_times(axes.vt.clone(), &scale);
     let d = along.zip_map(&excess, |d, e| d / e.sqrt());
     let own = PatternLikelihood {
-        alike: likelihood.alike,
         control: likelihood.control,
         ..PatternLikelihood::new(&r, &d, None)
     };
-    let Some(summed) = sampled::sample(&own, &[light.to_vec()], DRAWS)? else {
+    let Some(summed) = fields::sum(&own, sizes, &[light.to_vec()], (DRAWS, None))? else {
         return Ok(None);
     };
     let told = s.zip_map(&excess, |s, e| (tau * s).powi(2) / e);
     let share = axes.vt.map(|v| v * v).tr_mul(&told);
     let mut square = share.map(|share| tau * tau * (1.0 - share).max(0.0));
     let gain = s.zip_map(&excess, |s, e| tau * tau * s / e);
-    let all: f64 = summed.drawn.iter().map(|drawn| drawn.0).sum();
-    for (weight, light, levels) in &summed.drawn {
+    let drawn = draw(&summed, &own);
+    let each = 1.0 / drawn.len() as f64;
+    for (light, levels) in drawn {
         let level = DVector::from_fn(light.len(), |j, _| levels[usize::from(light[j])]);
         let left = &along - (&axes.vt * &level).component_mul(s);
         let mean = level + axes.vt.tr_mul(&left.component_mul(&gain));
-        square += (mean - shown).map(|off| off * off * (weight / all));
+        square += (mean - shown).map(|off| off * off * each);
     }
     let log_det: f64 = excess.iter().map(|e| libm::log(*e)).sum();
     Ok(Some(Part {
@@ -161,6 +167,49 @@ fn part(
         summed,
         square,
     }))
+}
+
+/// Some patterns in proportion to their weights, with levels of each as likely as they are.
+pub(super) fn draw<'a>(
+    summed: &'a Summed,
+    likelihood: &PatternLikelihood<'_>,
+) -> Vec<(&'a Vec<bool>, [f64; 2])> {
+    let key = Key {
+        seed: 3,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let random = &mut Stream::new(Sampling::Pcg, key);
+    let patterns = &summed.patterns;
+    let mut weights: Vec<(&Vec<bool>, &f64)> = patterns.weights.iter().collect();
+    weights.sort_unstable_by_key(|of| of.0);
+    let step = patterns.moments.weight / DRAWN as f64;
+    let mut next = random.uniform() * step;
+    let mut drawn = Vec::with_capacity(DRAWN);
+    for (light, weight) in weights {
+        next -= weight;
+        while next < 0.0 {
+            drawn.extend(levels(likelihood, light, random).map(|levels| (light, levels)));
+            next += step;
+        }
+    }
+    drawn
+}
+
+/// Levels of a pattern, as likely as they are.
+fn levels(
+    likelihood: &PatternLikelihood<'_>,
+    light: &[bool],
+    random: &mut Stream,
+) -> Option<[f64; 2]> {
+    if likelihood.given.is_some() {
+        return likelihood.given;
+    }
+    let lit = likelihood.lit(light);
+    let fit = LevelFit::new(likelihood.d, &(&likelihood.all - &lit), &lit)?;
+    let mut tries = (0..TRIES).map(|_| fit.draw([random.normal(), random.normal()]));
+    tries.find(|levels| possible(*levels))
 }
 
 #[cfg(test)]

@@ -5,16 +5,18 @@
 //! all ([`super::pattern_search`]); or the likeliest where neighbours may be alike, if that is
 //! settled and the photographs say that they are. The reported gap says how far it can be above the
 //! best: with given levels above what branch and bound left open (zero: proved best), with
-//! estimated ones above the minimum over all 0 ≤ ρ ≤ 1. The probabilities are sums over all
-//! patterns of few elements ([`super::enumerated`]), of more over the likeliest and by sampling
-//! ([`super::sampled`]), every pattern as likely beforehand. What they are where neighbours may be
-//! alike ([`super::neighbours`]) stands beside them: by the same patterns weighed anew, or, where
-//! these were drawn, by others, drawn by that. The standard errors are of the assumption that the
-//! picture goes by. Where the levels are not given, these errors and the levels allow for elements
-//! that differ from their level, as far as the photographs do ([`super::spread`]). How likely the photographs are by two levels, against what other methods
-//! assume, takes neighbours to be alike by an unknown degree ([`super::neighbours`]).
+//! estimated ones above the minimum over all 0 ≤ ρ ≤ 1.
+//!
+//! The probabilities are sums over all patterns of few elements ([`super::enumerated`]), of more
+//! over the likeliest and by sampling ([`super::sampled`]), every pattern as likely beforehand.
+//! What they are where neighbours may be alike, in fields of one element or of more
+//! ([`super::fields`]), stands beside them, and the evidence against what other methods assume is
+//! of that. The standard errors are of the assumption that the picture goes by. Where the levels
+//! are not given, these errors and the levels allow for elements that differ from their level, as
+//! far as the photographs do ([`super::spread`]).
 
 use super::coordinates::Coordinates;
+use super::fields::{self, Fields};
 use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
@@ -65,34 +67,33 @@ fn draws(n: usize) -> usize {
 }
 
 /// Where neighbours may be alike: what the patterns' evidence gains, and the patterns, if known. If
-/// nearly all were summed one by one these are weighed anew. Of such as were drawn the few that
-/// neighbours prefer say nothing: others are drawn, those of `known` listed. `likelihood` has that
-/// prior, if there is one.
+/// nearly all were summed one by one, those of single elements are weighed anew. Of such as were
+/// drawn the few that neighbours prefer say nothing: others are drawn, those of `known` listed.
 fn where_alike(
     likelihood: &PatternLikelihood<'_>,
-    known: &[Vec<bool>],
+    (sizes, known): (&[Fields], &[Vec<bool>]),
     summed: &Summed,
 ) -> Result<(Option<f64>, Option<Summed>), RecoveryError> {
-    let listed = is_listed(summed.sum);
-    if likelihood.alike.is_some() && !listed {
-        let drawn = sampled::sample(likelihood, known, draws(likelihood.r.ncols()))?;
-        if let Some(drawn) = drawn.filter(|drawn| drawn.sum.converged()) {
-            return Ok((Some(drawn.log_evidence - summed.log_evidence), Some(drawn)));
-        }
-    }
-    let reweighed = neighbours::Reweighed::new(likelihood.alike, &summed.patterns.weights);
+    let prior = sizes.last().and_then(|single| single.prior.as_ref());
+    let reweighed = neighbours::Reweighed::new(prior, &summed.patterns.weights);
     let quadrature = levels::rule();
     let of = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-    let anew = listed.then(|| reweighed.sum(of)).flatten();
-    let gained = reweighed.gained();
-    let anew = gained.zip(anew).map(|(gained, patterns)| Summed {
-        patterns,
-        log_evidence: summed.log_evidence + gained,
-        sum: summed.sum,
-        best: summed.best.clone(),
-        drawn: Vec::new(),
-    });
-    Ok((gained, anew))
+    let anew = is_listed(summed.sum).then(|| reweighed.sum(of)).flatten();
+    let own = reweighed
+        .gained()
+        .zip(anew)
+        .map(|(gained, patterns)| Summed {
+            patterns,
+            log_evidence: summed.log_evidence + gained,
+            sum: summed.sum,
+            best: summed.best.clone(),
+        });
+    let draws = draws(likelihood.r.ncols());
+    let found = fields::sum(likelihood, sizes, known, (draws, own))?;
+    Ok(match found.filter(|found| found.sum.converged()) {
+        Some(found) => (Some(found.log_evidence - summed.log_evidence), Some(found)),
+        None => (reweighed.gained(), None),
+    })
 }
 
 /// The likeliest pattern where neighbours may be alike, if that is settled.
@@ -149,15 +150,17 @@ pub(in crate::recovery) fn recover(
         ..PatternLikelihood::new(&r, &d, given)
     };
     let mut known = Vec::new();
+    let even = [Fields::even(n)];
     let summed = if free || n > MOST_SAMPLED || !options.probabilities {
         None
-    } else if enumerated::can(&likelihood) {
-        Some(enumerated::sum(&likelihood))
     } else {
-        // Where little is told, rough patterns fit better than those that are likely beforehand.
-        known = search.alike(grids)?;
-        known.push(best.light.clone());
-        sampled::sample(&likelihood, &known, draws(n))?
+        if !enumerated::can(&likelihood) {
+            // Where little is told, rough patterns fit better than those that are likely
+            // beforehand.
+            known = search.alike(grids)?;
+            known.push(best.light.clone());
+        }
+        fields::sum(&likelihood, &even, &known, (draws(n), None))?
     };
     if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
@@ -168,16 +171,14 @@ pub(in crate::recovery) fn recover(
     if given.is_some() && summed.as_ref().is_some_and(|s| s.sum == Sum::Exhaustive) {
         bound = 0.5 * best.misfit;
     }
-    let prior = summed.as_ref().and(neighbours::AlikePrior::new(grids));
-    let likelihood_if_alike = PatternLikelihood {
-        alike: prior.as_ref(),
-        control: problem.control,
-        ..PatternLikelihood::new(&r, &d, given)
+    let sizes = match summed {
+        Some(_) => Fields::alike(grids),
+        None => Vec::new(),
     };
     let (gained, alike) = match &summed {
         Some(summed) => {
             known.push(best.light.clone());
-            where_alike(&likelihood_if_alike, &known, summed)?
+            where_alike(&likelihood, (&sizes, &known), summed)?
         }
         None => (None, None),
     };
@@ -191,15 +192,17 @@ pub(in crate::recovery) fn recover(
     }
     let objective = 0.5 * best.misfit;
     let shown = best.values();
-    let (likelihood, assumed) = if settled_if_alike {
-        (&likelihood_if_alike, alike.as_ref())
+    let (sizes, assumed) = if settled_if_alike {
+        (&sizes[..], alike.as_ref())
     } else {
-        (&likelihood, summed.as_ref())
+        (&even[..], summed.as_ref())
     };
     let spread = match assumed {
-        Some(exact) if given.is_none() && options.spreads => {
-            Some(spread::sum(likelihood, exact, (&best.light, &shown))?)
-        }
+        Some(exact) if given.is_none() && options.spreads => Some(spread::sum(
+            &likelihood,
+            (sizes, exact),
+            (&best.light, &shown),
+        )?),
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;

@@ -1,4 +1,3 @@
-use super::super::neighbours::AlikePrior;
 use super::*;
 use crate::num::quadrature::Rule;
 use crate::recovery::bench::normal_stream;
@@ -19,8 +18,8 @@ fn if_alike() -> [f64; 16] {
     for k in 0..11 {
         let own = |s: usize| libm::exp(0.1 * f64::from(k) * bonds(s));
         let z: f64 = (1..15).map(own).sum();
-        for s in 1..15 {
-            all[s] += own(s) / z / 11.0;
+        for (s, of) in all.iter_mut().enumerate().take(15).skip(1) {
+            *of += own(s) / z / 11.0;
         }
     }
     all
@@ -65,7 +64,7 @@ fn by_hand(
 fn errors_are_those_of_all_patterns_levels_and_spreads() {
     let mut normal = normal_stream(3);
     let mixing = DMatrix::from_fn(4, 4, |_, _| normal());
-    let prior = AlikePrior::new(&[[2, 2]]);
+    let sizes = [vec![Fields::even(4)], Fields::alike(&[[2, 2]])];
     for (truth, noise) in [
         ([0.2, 0.8, 0.2, 0.8], 0.05),
         ([0.1, 0.7, 0.3, 0.9], 0.05),
@@ -76,15 +75,11 @@ fn errors_are_those_of_all_patterns_levels_and_spreads() {
         let d = &r * DVector::from_row_slice(&truth) + DVector::from_fn(4, |_, _| normal());
         let shown = DVector::from_row_slice(&SHOWN);
         let light = [false, true, false, true];
-        for (alike, beforehand) in [(None, [1.0 / 16.0; 16]), (prior.as_ref(), if_alike())] {
-            let likelihood = PatternLikelihood {
-                alike,
-                ..PatternLikelihood::new(&r, &d, None)
-            };
-            let exact = sampled::sample(&likelihood, &[light.to_vec()], 4000)
-                .unwrap()
-                .unwrap();
-            let found = sum(&likelihood, &exact, (&light, &shown)).unwrap();
+        for (sizes, beforehand) in sizes.iter().zip([[1.0 / 16.0; 16], if_alike()]) {
+            let likelihood = PatternLikelihood::new(&r, &d, None);
+            let exact = fields::sum(&likelihood, sizes, &[], (4000, None));
+            let exact = exact.unwrap().unwrap();
+            let found = sum(&likelihood, (sizes, &exact), (&light, &shown)).unwrap();
             let parts = SPREADS.map(|tau| by_hand(&r, &d, tau, &beforehand));
             let own = by_hand(&r, &d, 0.0, &beforehand);
             let others: Vec<f64> = parts

@@ -26,11 +26,11 @@ struct Count {
 }
 
 /// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least
-/// as well as what made the photographs, and the levels where neighbours may be alike are within
-/// three of their standard errors; that of 2 × 2 fields is found as it is. Pictures that are
-/// settled there are within four of their standard errors, and right as often as said. Where every
-/// pattern is as likely the levels 0.1 and 0.6 are so in 36 of 40 draws at a noise of 5.5e-3: it is
-/// none of chance.
+/// as well as what made the photographs, is found as it is, and the levels where neighbours may be
+/// alike are within three of their standard errors. Pictures that are settled there are within four
+/// of their standard errors, and right as often as said. Where every pattern is as likely the
+/// levels 0.1 and 0.6 are within three in 36 of 40 draws at a noise of 5.5e-3: it is none of
+/// chance.
 #[test]
 #[ignore = "slow"]
 fn the_search_reaches_what_made_the_photographs() {
@@ -82,15 +82,15 @@ fn the_search_reaches_what_made_the_photographs() {
                     count.alike += 1;
                     count.levels_if_alike += within(found.levels, found.level_errors);
                 }
-                // Many patterns fit at this noise; neighbours are alike in few of them.
-                if k == 2 && noise < 1e-2 {
+                // Many patterns fit at this noise; few of them have fields.
+                if noise < 1e-2 {
                     assert!(same, "{levels:?} {noise} {seed}: {patterns:?}");
                 }
                 // Where little noise sets one pattern apart, it is that of the photographs.
                 if noise < 2e-3 {
                     let told = format!("{k} {levels:?} {seed}: {patterns:?}");
                     assert!((&found.reflectance - &truth).amax() < 0.01, "{told}");
-                    assert!(patterns.pattern > 0.2 && patterns.sum.converged(), "{told}");
+                    assert!(patterns.sum.converged(), "{told}");
                     assert!(patterns.if_alike.unwrap().pattern > 0.9, "{told}");
                 }
             }

@@ -207,10 +207,10 @@ fn drawn_patterns_make_up_for_those_that_are_not_listed() {
         };
         assert!(listed < 0.7, "{given:?}: {listed}");
         assert!(disagreement < 0.05, "{given:?}: {disagreement}");
-        let drawn = sampled.drawn.len() as f64;
+        let drawn = spread::draw(&sampled, &likelihood);
         let mean = |j: usize| {
-            let levels = sampled.drawn.iter().map(|of| of.2[usize::from(of.1[j])]);
-            levels.sum::<f64>() / drawn
+            let levels = drawn.iter().map(|of| of.1[usize::from(of.0[j])]);
+            levels.sum::<f64>() / drawn.len() as f64
         };
         let means = DVector::from_fn(16, |j, _| mean(j));
         let [all, own] = [&all, &sampled].map(|s| s.finish(&all.best));
@@ -219,7 +219,7 @@ fn drawn_patterns_make_up_for_those_that_are_not_listed() {
         assert!((&own.mean - &all.mean).amax() < 0.02, "{given:?}");
         // 200 pictures, none of an element's values further than ½ from its mean.
         assert!(
-            (means - &all.mean).amax() < 4.0 * 0.5 / drawn.sqrt(),
+            (means - &all.mean).amax() < 4.0 * 0.5 / (drawn.len() as f64).sqrt(),
             "{given:?}"
         );
         let evidences = own.log_evidence - all.log_evidence;
