@@ -11,6 +11,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::{StepGuard, stop_flag};
 use super::{output, progress};
+use crate::folder::names::{ESTIMATED, UNCERTAINTIES};
 use crate::lab::finding::Describe;
 use crate::lab::{Attempt, Beside, RecoveredObject, Work, describe_recovery};
 use crate::matrix::{Matrix, npy};
@@ -180,7 +181,9 @@ pub(super) fn write(
                 "estimated": object.estimated,
             });
             output::write(&file(method, "choice.json"), output::json(&choice)?)?;
-            for (what, matrix) in uncertainties(object).into_iter().chain(beside(object)) {
+            let uncertainties = UNCERTAINTIES.into_iter().zip(uncertainties(object));
+            for (what, matrix) in uncertainties.chain(ESTIMATED.into_iter().zip(estimated(object)))
+            {
                 let name = named(method, &format!("{what}.npy"));
                 match matrix {
                     Some(matrix) => npy::write(&folder.join(name), &matrix)?,
@@ -196,28 +199,28 @@ pub(super) fn write(
     Ok(())
 }
 
-/// What is known of the uncertainty of `object`, by the names of its files.
-fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 9] {
+/// What is known of the uncertainty of `object`, in the order of [`UNCERTAINTIES`].
+fn uncertainties(object: &RecoveredObject) -> [Option<Matrix>; UNCERTAINTIES.len()] {
     let [nu, nv] = object.elements;
     let picture = |values: &Vec<f64>| Matrix::from_row_slice(nv, nu, values);
     let (bands, alike) = (object.bands.as_ref(), object.alike.as_ref());
     [
-        ("stderr", object.standard_error.as_ref().map(picture)),
-        ("light", object.light.as_ref().map(picture)),
-        ("alike", alike.map(|[mean, _]| picture(mean))),
-        ("alike.stderr", alike.map(|[_, error]| picture(error))),
-        ("bias", object.bias.as_ref().map(picture)),
-        ("lower", bands.map(|b| picture(&b.lower))),
-        ("upper", bands.map(|b| picture(&b.upper))),
-        ("covariance", object.covariance.clone()),
-        ("resolution", object.resolution.clone()),
+        object.standard_error.as_ref().map(picture),
+        object.light.as_ref().map(picture),
+        alike.map(|[mean, _]| picture(mean)),
+        alike.map(|[_, error]| picture(error)),
+        object.bias.as_ref().map(picture),
+        bands.map(|b| picture(&b.lower)),
+        bands.map(|b| picture(&b.upper)),
+        object.covariance.clone(),
+        object.resolution.clone(),
     ]
 }
 
-/// What was estimated beside the reflectances of `object`, by the names of its files: b, f and g of
-/// a frame as a row, a of a pixel as a column, as they add to Φcam; ε_l of a frame, whose light has
-/// the factor 1 + ε_l, above its standard error.
-fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 5] {
+/// What was estimated beside the reflectances of `object`, in the order of [`ESTIMATED`]: b, f and
+/// g of a frame as a row, a of a pixel as a column, as they add to Φcam; ε_l of a frame, whose
+/// light has the factor 1 + ε_l, above its standard error.
+fn estimated(object: &RecoveredObject) -> [Option<Matrix>; ESTIMATED.len()] {
     let found = object.estimated.as_ref();
     let of = |values: fn(&Beside) -> &Option<Vec<f64>>| found.and_then(|b| values(b).as_deref());
     let row = |v: &[f64]| Matrix::from_row_slice(1, v.len(), v);
@@ -229,10 +232,10 @@ fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 5] {
     let gains =
         gains.map(|g| Matrix::from_fn(2, g.size.len(), |k, l| [&g.size, &g.standard_error][k][l]));
     [
-        ("frame_constant", of(|b| &b.frame_constant).map(row)),
-        ("frame_patterns", patterns),
-        ("background", of(|b| &b.background).map(column)),
-        ("glare", of(|b| &b.glare).map(row)),
-        ("frame_gain", gains),
+        of(|b| &b.frame_constant).map(row),
+        patterns,
+        of(|b| &b.background).map(column),
+        of(|b| &b.glare).map(row),
+        gains,
     ]
 }

@@ -79,6 +79,27 @@ pub fn is_of_model(name: &str) -> bool {
     MODEL_FILES.contains(&name)
 }
 
+/// What is known of the uncertainty of a method's picture: `stderr` of METHOD.stderr.npy, ….
+pub const UNCERTAINTIES: [&str; 9] = [
+    "stderr",
+    "light",
+    "alike",
+    "alike.stderr",
+    "bias",
+    "lower",
+    "upper",
+    "covariance",
+    "resolution",
+];
+/// What a method estimated beside the picture, likewise.
+pub const ESTIMATED: [&str; 5] = [
+    "frame_constant",
+    "frame_patterns",
+    "background",
+    "glare",
+    "frame_gain",
+];
+
 /// Whether `name` is that of a file of [`RECOVERED`]: METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
 /// picard.csv, …, or one of the truth.
 pub fn is_of_recovered(name: &str) -> bool {
@@ -90,25 +111,8 @@ pub fn is_of_recovered(name: &str) -> bool {
     let name = name.strip_suffix('-').unwrap_or(name);
     let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
     let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
-    let whats = [
-        "",
-        "stderr",
-        "light",
-        "alike",
-        "alike.stderr",
-        "covariance",
-        "resolution",
-        "bias",
-        "lower",
-        "upper",
-        "texture",
-        "choice",
-        "frame_constant",
-        "frame_patterns",
-        "background",
-        "glare",
-        "frame_gain",
-    ];
+    let of_picture = ["", "texture", "choice"].contains(&what);
+    let known_beside = UNCERTAINTIES.contains(&what) || ESTIMATED.contains(&what);
     let exts = ["npy", "png", "csv", "svg", "ply", "json"];
-    known && whats.contains(&what) && exts.contains(&ext)
+    known && (of_picture || known_beside) && exts.contains(&ext)
 }
