@@ -98,8 +98,8 @@ impl Fields {
     }
 
     /// The sum over patterns of these fields, by so many draws where they are too many to be summed
-    /// one by one, those of `known` listed. None where none is likelier than e to `least` whatever
-    /// it is, or where the lattices are beyond double precision.
+    /// one by one, those of `known` listed. None where no pattern is possible, none of fields larger
+    /// than an element likelier than e to `least`, or the lattices are beyond double precision.
     fn sum(
         &self,
         likelihood: &PatternLikelihood<'_>,
@@ -126,7 +126,8 @@ impl Fields {
             ..PatternLikelihood::new(&r, likelihood.d, likelihood.given)
         };
         if enumerated::can(&own) {
-            return Ok(Some(enumerated::sum(&own)));
+            let summed = enumerated::sum(&own);
+            return Ok(Some(summed).filter(|summed| summed.log_evidence.is_finite()));
         }
         let known: Vec<Vec<bool>> = known.iter().filter_map(|s| self.fields(s)).collect();
         sampled::sample(&own, &known, draws)
@@ -134,7 +135,7 @@ impl Fields {
 }
 
 /// The sum over patterns of fields of any of these sizes; `own` in place of that of single elements
-/// where it is known. None where a size that counts is beyond double precision.
+/// where it is known. None where that of single elements is not to be had.
 pub(super) fn sum(
     likelihood: &PatternLikelihood<'_>,
     sizes: &[Fields],
@@ -143,7 +144,9 @@ pub(super) fn sum(
 ) -> Result<Option<Summed>, RecoveryError> {
     let mut known = known.to_vec();
     let mut parts: Vec<(&Fields, Summed)> = Vec::new();
-    let mut best = f64::NEG_INFINITY;
+    let mut best = own
+        .as_ref()
+        .map_or(f64::NEG_INFINITY, |own| own.log_evidence);
     let (mut own, mut whole) = (own, true);
     for fields in sizes {
         let summed = match own.take_if(|_| fields.is_single()) {

@@ -114,6 +114,28 @@ fn fields_divide_all_surfaces() {
     assert_eq!(fields[0].fields(&mixed), None);
 }
 
+/// Where no two levels can be there are no probabilities, and where fields of 2 × 2 elements cannot
+/// be, only those of single ones count.
+#[test]
+fn what_cannot_be_does_not_count() {
+    let r = DMatrix::from_diagonal_element(16, 16, 1e3);
+    let fields = Fields::alike(&[[4, 4]]);
+    let of = |d: &DVector<f64>, own: Option<Summed>| {
+        let likelihood = PatternLikelihood::new(&r, d, None);
+        sum(&likelihood, &fields, &[], (1000, own)).unwrap()
+    };
+    assert!(of(&DVector::from_element(16, -1e5), None).is_none());
+    let board = DVector::from_fn(16, |j, _| if (j + j / 4) % 2 == 0 { 800.0 } else { 200.0 });
+    let found = of(&board, None).unwrap();
+    assert!(found.patterns.likeliest().unwrap().1 > 0.999);
+    // Its share is one of two sizes'.
+    let likelihood = PatternLikelihood::new(&r, &board, None);
+    let single = fields[1].sum(&likelihood, &[], (0, 0.0)).unwrap().unwrap();
+    let half = single.log_evidence - std::f64::consts::LN_2;
+    assert!((found.log_evidence - half).abs() < 1e-12);
+    assert!((of(&board, Some(single)).unwrap().log_evidence - half).abs() < 1e-12);
+}
+
 /// A pattern by the prior of 8 × 8 elements: a size, a degree β, and fields of it by heat bath.
 fn drawn(random: &mut Stream) -> Vec<bool> {
     let mut below = |n: usize| ((random.uniform() * n as f64) as usize).min(n - 1);
