@@ -98,8 +98,8 @@ impl Fields {
     }
 
     /// The sum over patterns of these fields, by so many draws where they are too many to be summed
-    /// one by one, those of `known` listed. None where no pattern is possible, where the lattices are
-    /// beyond double precision, and of larger fields where none is likelier than e to `least`.
+    /// one by one, those of `known` listed. None where no pattern is possible, where the lattices
+    /// are beyond double precision, and of larger fields where none is likelier than e to `least`.
     fn sum(
         &self,
         likelihood: &PatternLikelihood<'_>,
