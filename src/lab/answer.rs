@@ -1,6 +1,7 @@
 //! What a run answers, in the order in which it is asked: what was hidden, what came back, how sure
 //! that is, and whether traced and modelled light agree.
 
+use super::chosen::beforehand;
 use super::finding::{Describe, Finding, Tone};
 use super::objects::RecoveredObject;
 use super::recoveries::{by_surface, determined};
@@ -210,6 +211,9 @@ fn error(pictures: &[&RecoveredObject]) -> String {
     let errors: Vec<f64> = errors.flatten().copied().collect();
     let light = pictures.iter().filter_map(|r| r.light.as_ref());
     let light: Vec<f64> = light.flatten().copied().collect();
+    let patterns = pictures.iter().filter_map(|r| r.patterns.as_ref());
+    let mut supposed = patterns.map(|patterns| format!(" if {}", beforehand(patterns)));
+    let supposed = supposed.next().unwrap_or_default();
     let mut told = Vec::new();
     if !errors.is_empty() {
         let most = errors.iter().copied().fold(0.0, f64::max);
@@ -224,7 +228,7 @@ fn error(pictures: &[&RecoveredObject]) -> String {
             .iter()
             .filter(|p| **p > DECIDED || **p < 1.0 - DECIDED);
         told.push(format!(
-            "{} of {} elements light or dark with more than {}\u{a0}% probability",
+            "{} of {} elements light or dark with more than {}\u{a0}% probability{supposed}",
             decided.count(),
             light.len(),
             100.0 * DECIDED

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::gains::Gains;
 use crate::recovery::{Choice, Method, Parameter, Recovered};
-pub(super) use describe::{chosen_words, words};
+pub(super) use describe::{beforehand, chosen_words, words};
 
 /// A parameter, why it is this one, and what a run needs to take the same again.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,6 +2,7 @@
 
 mod misfit;
 
+use super::chosen::beforehand;
 use super::fit::Judged;
 use super::gains::drifting;
 use crate::num::digits::{figure, significant};
@@ -47,7 +48,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         without_bands(found),
         unsampled(found),
         spread(found),
-        one_of_many(found),
+        one_of_many(found, judged),
     ];
     every.into_iter().flatten().collect()
 }
@@ -221,26 +222,24 @@ fn few_directions(found: &Recovered) -> Option<String> {
 fn spread(found: &Recovered) -> Option<String> {
     let of = found.patterns.as_ref()?;
     let assumed = of.assumed();
-    let beforehand = if of.settled_if_alike {
-        "neighbours being alike"
-    } else {
-        "every pattern being as likely"
-    };
-    (assumed.exact < UNLIKELY).then(|| format!(
-        "{beforehand}, exactly two reflectances have probability {}: elements that \
-         differ from theirs by about {} explain the photographs better. Believe the standard errors, not the \
-         pattern, or joint-gp{}",
-        figure(assumed.exact, 2),
-        assumed.spread,
+    let exact = assumed.exact.filter(|p| *p < UNLIKELY)?;
+    Some(format!(
+        "if {}, exactly two reflectances have probability {}: elements that differ from theirs by about {} \
+         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp{}",
+        beforehand(of),
+        figure(exact, 2),
+        assumed.spread?,
         or_alike(of)
     ))
 }
 
-/// A pattern that others explain the photographs as well as.
-fn one_of_many(found: &Recovered) -> Option<String> {
+/// A pattern that explains the photographs no better than others do.
+fn one_of_many(found: &Recovered, judged: &Judged) -> Option<String> {
     let of = found.patterns.as_ref()?;
     let assumed = of.assumed();
-    let told = assumed.sum.converged() && assumed.exact >= UNLIKELY;
+    let explains = judged.fit.as_ref().is_none_or(|fit| fit.fits);
+    let exact = assumed.exact.is_none_or(|p| p >= UNLIKELY);
+    let told = explains && exact && assumed.sum.converged();
     (told && assumed.pattern < ONE_OF_MANY).then(|| {
         format!(
             "its pattern has probability {}: it is one of many that explain the photographs. Believe \

@@ -27,7 +27,7 @@ pub fn by_trust(objects: &mut [RecoveredObject]) {
         rank.refuted |= object
             .patterns
             .as_ref()
-            .is_some_and(|p| p.assumed().exact < EXACT);
+            .is_some_and(|p| p.assumed().exact.is_some_and(|p| p < EXACT));
         rank.impossible |= is_impossible(object);
         rank.warnings = rank.warnings.max(object.warnings.len());
     }

@@ -20,7 +20,7 @@ pub enum Sum {
     },
 }
 
-/// As its error, absent where all patterns were summed, and whether it is to be believed.
+/// As its error, null where all patterns were summed, and whether it is to be believed.
 impl Serialize for Sum {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
@@ -55,8 +55,8 @@ impl Sum {
 }
 
 /// What the photographs say of a picture of two levels, every pattern being equally likely
-/// beforehand, and so every pair of levels 0 ≤ dark < light ≤ 1 where they are not given; then
-/// elements may also differ from their level, by a normal deviate.
+/// beforehand (but for `if_alike`), and so every pair of levels 0 ≤ dark < light ≤ 1 where they are
+/// not given; then elements may also differ from their level, by a normal deviate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Patterns {
     /// Probability of each element to be light.
@@ -72,13 +72,15 @@ pub struct Patterns {
     pub levels: [f64; 2],
     /// Their standard deviations; 0 where they were given.
     pub level_errors: [f64; 2],
-    /// Probability of the pattern that was recovered, its levels exact, by all.
+    /// Probability of the pattern that was recovered and, where `exact` is asked, of exact levels.
     pub pattern: f64,
-    /// Probability that the elements do not differ from their levels, ½ beforehand; 1 where that
+    /// Probability that the elements do not differ from their levels, ½ beforehand. None where that
     /// was not asked: of given levels, and of patterns that the picture does not go by.
-    pub exact: f64,
-    /// The likeliest standard deviation by which they do, if they do; 0 where that was not asked.
-    pub spread: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<f64>,
+    /// The likeliest standard deviation by which they do, if they do; none likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spread: Option<f64>,
     /// ln of the probability density of the photographs if the levels are exact, over that of the
     /// numbers that fit them best.
     pub log_evidence: f64,

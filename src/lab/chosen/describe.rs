@@ -49,19 +49,11 @@ pub(in crate::lab) fn words(found: &Recovered, explains: bool) -> String {
 fn patterns(of: &Patterns) -> String {
     let assumed = of.assumed();
     // Levels that were given are taken for the surface's.
-    let exact = if assumed.spread > 0.0 {
-        format!(
-            "; exactly two reflectances have probability {:.3}",
-            assumed.exact
-        )
-    } else {
-        "; if there are two reflectances and no more".to_owned()
+    let exact = match assumed.exact {
+        Some(exact) => format!("; exactly two reflectances have probability {exact:.3}"),
+        None => format!("; {TWO}"),
     };
-    let beforehand = if of.settled_if_alike {
-        "neighbours may be alike, as of a board or a letter"
-    } else {
-        "no pattern likelier beforehand than another"
-    };
+    let beforehand = beforehand(of);
     format!(
         "{exact}, if the scale is right, and {beforehand}, this pattern has probability {:.3}, {}, {} ({})",
         assumed.pattern,
@@ -69,6 +61,16 @@ fn patterns(of: &Patterns) -> String {
         levels(assumed),
         how(assumed.sum)
     ) + &otherwise(of)
+}
+
+/// What is taken for granted of patterns.
+const TWO: &str = "if there are two reflectances and no more";
+const EVEN: &str = "no pattern is likelier beforehand than another";
+const ALIKE: &str = "neighbours may be alike, as of a board or a letter";
+
+/// What the picture takes for granted beforehand.
+pub(in crate::lab) fn beforehand(of: &Patterns) -> &'static str {
+    if of.settled_if_alike { ALIKE } else { EVEN }
 }
 
 /// What the picture does not go by, where it is known.
@@ -80,11 +82,11 @@ fn otherwise(of: &Patterns) -> String {
             } else {
                 "a probability that too few draws tell".to_owned()
             };
-            format!("; if no pattern is likelier beforehand than another, it has {said}")
+            format!("; {TWO} and {EVEN}, it has {said}")
         }
         Some(alike) => format!(
-            "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, {}, and the mean of \
-             all patterns, beside it, has a standard error of {} an element (root mean square)",
+            "; {TWO} and {ALIKE}, it has probability {:.3}, {}, and the mean of all patterns, beside it, has \
+             a standard error of {} an element (root mean square)",
             alike.pattern,
             levels(alike),
             figure(root_mean_square(alike.deviation.as_slice()), 2)

@@ -189,7 +189,8 @@ fn greys_about_two_levels_are_told_from_two_levels() {
                 Control::none(),
             );
             let found = &found[0].outcome.as_ref().unwrap()[0];
-            let exact = found.patterns.as_ref().unwrap().assumed().exact;
+            let assumed = found.patterns.as_ref().unwrap().assumed();
+            let exact = assumed.exact.unwrap();
             let told = found
                 .warnings
                 .iter()

@@ -49,8 +49,8 @@ pub struct RecoveredObject {
     /// ([`Patterns::assumed`]).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<Vec<f64>>,
-    /// Mean of each element over all patterns of `joint-two-valued`, where neighbours may be alike,
-    /// and the standard deviation about it.
+    /// Mean of each element's level over all patterns of `joint-two-valued` where neighbours may be
+    /// alike, and the standard deviation about it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alike: Option<[Vec<f64>; 2]>,
     /// What is known of pattern and levels, all surfaces together.

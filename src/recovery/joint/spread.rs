@@ -64,8 +64,8 @@ impl Spread {
     pub(super) fn finish(&self, exact: Patterns) -> Patterns {
         let pattern = exact.pattern * self.exact;
         Patterns {
-            exact: self.exact,
-            spread: self.likeliest,
+            exact: Some(self.exact),
+            spread: Some(self.likeliest),
             ..self.moments.finish(pattern, exact.log_evidence, exact.sum)
         }
     }

@@ -92,14 +92,28 @@ fn where_alike(
     let found = fields::sum(likelihood, sizes, known, (draws, own))?;
     Ok(match found.filter(|found| found.sum.converged()) {
         Some(found) => (Some(found.log_evidence - summed.log_evidence), Some(found)),
-        None => (reweighed.gained(), None),
+        // What was drawn for fair coins tells no evidence of another prior.
+        None => {
+            let known = sizes.is_empty() || is_listed(summed.sum);
+            (reweighed.gained().filter(|_| known), None)
+        }
     })
 }
 
-/// The likeliest pattern where neighbours may be alike, if that is settled.
-fn settled(gained: Option<f64>, alike: Option<&Summed>) -> Option<Vec<bool>> {
+/// The likeliest pattern where neighbours may be alike, if that is settled; `even` are the sums
+/// where every pattern is as likely.
+fn settled_pattern(
+    gained: Option<f64>,
+    alike: Option<&Summed>,
+    even: &Summed,
+) -> Option<Vec<bool>> {
     let (light, share) = alike?.patterns.likeliest()?;
-    (share >= SETTLED && gained >= Some(TELLS)).then(|| light.clone())
+    let doubted = if even.sum.converged() {
+        0.0
+    } else {
+        libm::log(fields::DOUBTED)
+    };
+    (share >= SETTLED && gained >= Some(TELLS + doubted)).then(|| light.clone())
 }
 
 pub(in crate::recovery) fn recover(
@@ -183,7 +197,9 @@ pub(in crate::recovery) fn recover(
         None => (None, None),
     };
     let mut status = "no change of one or two elements improves";
-    let settled = settled(gained, alike.as_ref()).map(|light| search.fit(light));
+    let settled = summed.as_ref();
+    let settled = settled.and_then(|even| settled_pattern(gained, alike.as_ref(), even));
+    let settled = settled.map(|light| search.fit(light));
     let settled = settled.filter(|found| search.can(found));
     let settled_if_alike = settled.is_some();
     if let Some(found) = settled.filter(|found| found.light != best.light) {

@@ -48,21 +48,20 @@ fn by_hand([nu, nv]: [usize; 2], sizes: &[usize]) -> Vec<f64> {
 }
 
 /// Evidence, marginals and each pattern's probability are those of the sum over all patterns by the
-/// prior's own definition; the sizes are those that divide the grid.
+/// prior's own definition.
 #[test]
 fn sums_are_those_of_all_patterns_by_the_prior() {
     let mut normal = normal_stream(9);
     for (grid, sizes) in [
-        ([4, 4], vec![1, 2]),
-        ([6, 2], vec![1, 2]),
+        ([4, 4], vec![2, 1]),
+        ([6, 2], vec![2, 1]),
         ([3, 4], vec![1]),
     ] {
         let n = grid[0] * grid[1];
         let beforehand = by_hand(grid, &sizes);
         assert!((beforehand.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        let fields = Fields::alike(&[grid]);
-        assert_eq!(fields.len(), sizes.len(), "{grid:?}");
-        assert!(fields.last().unwrap().is_single());
+        let of_size = |b: &usize| Fields::of_size(&[grid], *b);
+        let fields: Vec<Fields> = sizes.iter().map(of_size).collect();
         let r = DMatrix::from_fn(n, n, |_, _| normal());
         let truth = DVector::from_fn(n, |j, _| if j % grid[0] < 2 { 0.8 } else { 0.2 });
         let d = &r * truth + DVector::from_fn(n, |_, _| normal());
@@ -93,8 +92,8 @@ fn sums_are_those_of_all_patterns_by_the_prior() {
     }
 }
 
-/// Two surfaces have fields of one size; grids of no common divisor single elements only, and
-/// without a grid nothing is alike.
+/// Two surfaces have fields of one size; where these do not divide them, or are too few, elements
+/// are by themselves, and without a grid nothing is alike.
 #[test]
 fn fields_divide_all_surfaces() {
     let of = |grids: &[[usize; 2]]| -> Vec<usize> {
@@ -104,10 +103,11 @@ fn fields_divide_all_surfaces() {
             .collect()
     };
     assert_eq!(of(&[[8, 8]]), [16, 64]);
-    assert_eq!(of(&[[2, 2], [4, 2]]), [3, 12]);
+    assert_eq!(of(&[[8, 8], [2, 4]]), [18, 72]);
+    assert_eq!(of(&[[6, 8]]), [48]);
     assert_eq!(of(&[[7, 5]]), [35]);
     assert!(of(&[]).is_empty());
-    let fields = Fields::alike(&[[2, 2], [4, 2]]);
+    let fields = [Fields::of_size(&[[2, 2], [4, 2]], 2)];
     assert_eq!(fields[0].of, [0, 0, 0, 0, 1, 1, 2, 2, 1, 1, 2, 2]);
     assert_eq!(fields[0].fields(&[true; 12]), Some(vec![true; 3]));
     let mixed: Vec<bool> = (0..12).map(|j| j == 5).collect();
@@ -119,7 +119,7 @@ fn fields_divide_all_surfaces() {
 #[test]
 fn what_cannot_be_does_not_count() {
     let r = DMatrix::from_diagonal_element(16, 16, 1e3);
-    let fields = Fields::alike(&[[4, 4]]);
+    let fields = [2, 1].map(|b| Fields::of_size(&[[4, 4]], b));
     let of = |d: &DVector<f64>, own: Option<Summed>| {
         let likelihood = PatternLikelihood::new(&r, d, None);
         sum(&likelihood, &fields, &[], (1000, own)).unwrap()
@@ -166,7 +166,8 @@ fn drawn(random: &mut Stream) -> Vec<bool> {
 
 /// Pictures by the prior, levels too, at noises that leave patterns open: the recovered pattern is
 /// right as often as its probability where neighbours may be alike says, and so are the settled. Of
-/// 60 draws 53 are stated and 45 right where 45.0 are expected, 42 settled and right (40.7).
+/// 60 draws, so many once, 53 were stated and 45 right (45.0 expected), 42 settled and right
+/// (40.7).
 #[test]
 #[ignore = "slow"]
 fn patterns_are_right_as_often_as_they_say() {
@@ -201,7 +202,7 @@ fn patterns_are_right_as_often_as_they_say() {
             .zip(&light)
             .all(|(x, light)| (*x > middle) == *light);
         // Here the levels are exact.
-        let probability = of.pattern / of.exact;
+        let probability = of.pattern / of.exact.unwrap_or(1.0);
         all.add(same, probability);
         if patterns.settled_if_alike {
             settled.add(same, probability);
