@@ -15,11 +15,11 @@ const TELLS: f64 = 3.0;
 /// patterns that is not to be believed does not. Every error of the model counts as evidence
 /// against both, the stiffer one more.
 pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
-    let known = found.iter().filter(|found| mean(found).is_some());
-    let mut known: Vec<(&Recovered, f64)> =
-        known.filter_map(|f| Some((*f, f.log_evidence?))).collect();
+    let known = found.iter().copied();
+    let known = known.filter_map(|f| Some((f, f.log_evidence?, mean(f)?)));
+    let mut known: Vec<(&Recovered, f64, &DVector<f64>)> = known.collect();
     known.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let [(likeliest, best), (next, less), ..] = known[..] else {
+    let [(likeliest, best, _), (next, less, _), ..] = known[..] else {
         return None;
     };
     let is_far = likeliest.patterns.is_some() && loss(next, &known) < loss(likeliest, &known);
@@ -43,11 +43,10 @@ pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
 /// Expected squared error of a picture x, but for what is the same for all: Σ_k w_k |x − m_k|², w_k
 /// the probability of what method k assumes and m_k the mean of the reflectances by it. A pattern
 /// is the likeliest of many, and far from their mean where it is one of many.
-fn loss(shown: &Recovered, all: &[(&Recovered, f64)]) -> f64 {
-    let best = all.iter().map(|(_, e)| *e).fold(f64::MIN, f64::max);
-    let each = all.iter().map(|(by, evidence)| {
-        let off = mean(by).map_or(0.0, |mean| (&shown.reflectance - mean).norm_squared());
-        libm::exp(evidence - best) * off
+fn loss(shown: &Recovered, all: &[(&Recovered, f64, &DVector<f64>)]) -> f64 {
+    let best = all.iter().map(|(_, e, _)| *e).fold(f64::MIN, f64::max);
+    let each = all.iter().map(|(_, evidence, mean)| {
+        libm::exp(evidence - best) * (&shown.reflectance - *mean).norm_squared()
     });
     each.sum()
 }
