@@ -139,18 +139,7 @@ impl<'a> Cut<'a> {
 
     /// The wall as each spot lights it, at `level`; nothing where a surface shines.
     pub(super) fn lit(&self, scene: &Scene, level: usize) -> Vec<Vec<WallPoint>> {
-        if scene.laser.is_shining() {
-            return vec![Vec::new(); self.spots];
-        }
-        let offsets = profile_nodes(self.profile, 2 + 2 * level);
-        let lit = |l: usize| {
-            let basis = Basis::around(scene.laser.spots[l].target.normal);
-            let lit = |([x, y], w): &([f64; 2], f64)| {
-                wall_point::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w)
-            };
-            offsets.iter().map(lit).collect()
-        };
-        (0..self.spots).map(lit).collect()
+        lit(scene, self.profile, 2 + 2 * level)
     }
 
     /// One quadrature: Φ = Σ_q C\[p,q\]·D\[q,l\] over the nodes q of the hidden surfaces, in
@@ -195,6 +184,24 @@ impl<'a> Cut<'a> {
         }
         phi.transpose()
     }
+}
+
+/// The wall as each spot of this profile lights it, by `n` nodes from middle to rim; nothing
+/// where a surface shines.
+pub(super) fn lit(scene: &Scene, profile: Profile, n: usize) -> Vec<Vec<WallPoint>> {
+    let spots = scene.laser.spots.len();
+    if scene.laser.is_shining() {
+        return vec![Vec::new(); spots];
+    }
+    let offsets = profile_nodes(profile, n);
+    let lit = |l: usize| {
+        let basis = Basis::around(scene.laser.spots[l].target.normal);
+        let lit = |([x, y], w): &([f64; 2], f64)| {
+            wall_point::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w)
+        };
+        offsets.iter().map(lit).collect()
+    };
+    (0..spots).map(lit).collect()
 }
 
 /// The middles of the scene's elements with area · albedo/π.

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::cells::{HiddenCell, cells_of_elements};
 use super::cut::Cut;
+use super::divided;
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
@@ -30,7 +31,8 @@ pub struct Factors {
     pub laser: Matrix,
     /// The element of each term, ascending.
     pub element: Vec<usize>,
-    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j.
+    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, and what
+    /// another division of footprints and spots does.
     pub change: f64,
     /// Cells of the hidden surfaces in the last step.
     pub cells: usize,
@@ -71,7 +73,11 @@ const MOST_HALVINGS: u32 = 5;
 pub(super) const TARGET: f64 = 1e-3;
 /// The same of what is extrapolated.
 const SMOOTH_TARGET: f64 = 1e-4;
-/// Level of the rules on spots, and on footprints where nothing is in the way.
+/// Cells at the end, of each that was cut once; and the share of all pairs that a finer division
+/// of footprints and spots may take then: descents ask for the light dozens of times.
+const FINAL: usize = 16;
+const SHARE: f64 = 0.1;
+/// Level of the rule on footprints where nothing is in the way.
 const LEVEL: usize = 1;
 
 /// The factors of the elements, settled to a change of 1e-3; of 1e-4 with nothing in the way.
@@ -103,7 +109,8 @@ pub(super) struct Settled<'a> {
 
 /// The elements of a scene, cells of them cut in four until all A_j together change by less than
 /// `target`, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
-/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3.
+/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3; else
+/// footprints and spots are divided until that changes the A_j of elements cut once by less.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
@@ -114,44 +121,57 @@ pub(super) fn settled<'a>(
     grids: &[ElementGrid],
     target: f64,
 ) -> Result<Settled<'a>, ModelError> {
-    let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
-    let lit = cut.lit(scene, LEVEL);
-    let walls = scene.camera.pixels() + lit.iter().map(Vec::len).sum::<usize>();
-    let past = Past {
-        scene,
-        kernel,
-        footprints: cut.seen(scene, LEVEL),
-        occlusion: Obstructed::new(scene, kernel, obstacles, lit),
-    };
     let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
     let is_smooth = obstacles.is_empty();
-    let mut before: Option<Vec<Own>> = None;
-    let mut halvings = 0;
-    loop {
-        halvings += 1;
-        let fine = if is_smooth { 4.0 / 3.0 } else { 1.0 };
-        let mut of = cells_of(&hidden, grids, halvings, fine);
-        if is_smooth {
-            let coarse = cells_of(&hidden, grids, halvings - 1, 1.0 - fine);
-            of.iter_mut()
-                .zip(coarse)
-                .for_each(|(all, own)| all.extend(own));
+    let cut_in = |halvings: u32| {
+        if !is_smooth {
+            return cells_of(&hidden, grids, halvings, 1.0);
         }
-        let cells: usize = of.iter().map(Vec::len).sum();
-        let now = of.par_iter().map(|cells| past.own(cells));
-        let now: Vec<Own> = now.collect::<Result<_, ModelError>>()?;
-        let exhausted = 4.0 * (cells * walls) as f64 > past.occlusion.most_pairs();
-        if let Some(change) = before.as_ref().map(|before| moved(before, &now))
-            && (exhausted || halvings == MOST_HALVINGS || change < target)
-        {
+        let mut of = cells_of(&hidden, grids, halvings, 4.0 / 3.0);
+        let coarse = cells_of(&hidden, grids, halvings - 1, -1.0 / 3.0);
+        of.iter_mut()
+            .zip(coarse)
+            .for_each(|(all, own)| all.extend(own));
+        of
+    };
+    let mut halvings = 1;
+    let mut of = cut_in(halvings);
+    let count = |of: &[Vec<HiddenCell>]| of.iter().map(Vec::len).sum::<usize>();
+    let footprints = Cut::new(scene, Extent::UNOBSTRUCTED).seen(scene, LEVEL);
+    let by = |division| {
+        let past = Past {
+            scene,
+            kernel,
+            footprints: footprints.clone(),
+            occlusion: divided::past(scene, kernel, obstacles, division),
+        };
+        let own = past.all(&of)?;
+        Ok::<_, ModelError>((past, own))
+    };
+    let walls = divided::settled(
+        by,
+        |(past, _)| !is_smooth && divided::can_be_finer(&past.occlusion, FINAL * count(&of), SHARE),
+        |(_, now), (_, next)| moved(now, next),
+        target,
+    )?;
+    let (past, mut now) = walls.used;
+    let left = walls.other.map_or(0.0, |(_, other)| moved(&other, &now));
+    let occlusion = &past.occlusion;
+    loop {
+        let exhausted = 4.0 * (count(&of) * occlusion.walls) as f64 > occlusion.most_pairs();
+        halvings += 1;
+        of = cut_in(halvings);
+        let next = past.all(&of)?;
+        let change = moved(&now, &next);
+        now = next;
+        if exhausted || halvings == MOST_HALVINGS || change < target {
             return Ok(Settled {
                 past,
                 cells: of,
                 own: now,
-                change,
+                change: change + left,
             });
         }
-        before = Some(now);
     }
 }
 
@@ -191,6 +211,11 @@ pub(super) struct Past<'a> {
 }
 
 impl Past<'_> {
+    /// Of the elements that these cells make up.
+    fn all(&self, of: &[Vec<HiddenCell>]) -> Result<Vec<Own>, ModelError> {
+        of.par_iter().map(|cells| self.own(cells)).collect()
+    }
+
     /// Of the element that these cells make up.
     fn own(&self, cells: &[HiddenCell]) -> Result<Own, ModelError> {
         let (pixels, spots) = (self.occlusion.pixels(), self.occlusion.spots());

@@ -17,6 +17,7 @@ mod cells;
 mod converged;
 mod cut;
 mod differential;
+mod divided;
 mod error;
 mod extent;
 mod factors;

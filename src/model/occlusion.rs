@@ -8,11 +8,12 @@
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
 //! centroid. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
-//! and large meshes are asked ray by ray.
+//! and large meshes are asked ray by ray. How finely footprints and spots are divided for this is
+//! up to [`super::divided`].
 
 use super::blocks::Blocks;
 use super::cells::HiddenCell;
-use super::cut::exitance;
+use super::cut::{exitance, lit};
 use super::kernel::{HiddenPoint, Kernel};
 use super::parts::footprint_parts;
 use super::patch::{Patch, triangles};
@@ -31,25 +32,32 @@ pub(super) struct Obstructed<'a> {
     /// The parts of each pixel's footprint.
     pub pixels: Vec<Vec<Patch>>,
     pub blocks: Blocks,
+    /// Points of the wall that are looked at, where no footprint is near for its size.
+    pub walls: usize,
     /// Of each spot, each with whether the laser reaches it.
     pub lit: Vec<Vec<(WallPoint, bool)>>,
 }
 
 impl<'a> Obstructed<'a> {
-    /// `lit`: the wall points of each spot.
+    /// Spots by `nodes` from their middle to their rim; each part of a footprint that is far for
+    /// its size in `side` × `side` more.
     pub(super) fn new(
         scene: &'a Scene,
         kernel: Kernel,
         obstacles: &[ShapeId],
-        lit: Vec<Vec<WallPoint>>,
+        (nodes, side): (usize, usize),
     ) -> Self {
+        let lit = lit(scene, scene.laser.profile, nodes);
         let opaque = Opaque::new(scene.bvh(), |id| obstacles.contains(&id));
         let hidden = opaque.from(scene.camera.position, None, scene.bvh());
         let pixel = |p| {
-            let parts = footprint_parts(scene, p);
-            parts
-                .iter()
-                .map(|part| Patch::new(scene, p, part, &hidden))
+            let parts = footprint_parts(scene, p).into_iter();
+            let all = parts.flat_map(|part| {
+                let size = part.side / side as f64;
+                let at = move |k: usize, axis: usize| part.from[axis] + k as f64 * size;
+                (0..side * side).map(move |k| ([at(k % side, 0), at(k / side, 1)], size))
+            });
+            all.map(|square| Patch::new(scene, p, square, &hidden))
                 .collect()
         };
         let pixels: Vec<Vec<Patch>> = (0..scene.camera.pixels()).map(pixel).collect();
@@ -58,16 +66,18 @@ impl<'a> Obstructed<'a> {
             let free = ray.is_some_and(|ray| !scene.bvh().blocked(&ray, [None, w.surface]));
             (w, free)
         };
-        let lit = lit
+        let lit: Vec<Vec<(WallPoint, bool)>> = lit
             .into_iter()
-            .map(|spot| spot.into_iter().map(laser).collect());
+            .map(|spot| spot.into_iter().map(laser).collect())
+            .collect();
         Self {
             scene,
             kernel,
             opaque,
             blocks: Blocks::new(&pixels, scene.camera.columns),
+            walls: pixels.len() * side * side + lit.iter().map(Vec::len).sum::<usize>(),
             pixels,
-            lit: lit.collect(),
+            lit,
         }
     }
 

@@ -1,6 +1,5 @@
 //! Parts of footprints on the wall, and what the camera sees of them.
 
-use super::parts::FootprintPart;
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{Blockers, DVec3, Hidden, Pieces, Polygon, Ray, ShapeId, area_and_middle};
 use crate::scene::Scene;
@@ -18,8 +17,13 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    pub(super) fn new(scene: &Scene, pixel: usize, part: &FootprintPart, hidden: &Hidden) -> Self {
-        let ([a, b], side) = (part.from, part.side);
+    /// Of a square of a pixel's footprint, from a corner on, in coordinates of the footprint.
+    pub(super) fn new(
+        scene: &Scene,
+        pixel: usize,
+        ([a, b], side): ([f64; 2], f64),
+        hidden: &Hidden,
+    ) -> Self {
         let at = |[x, y]: [f64; 2]| {
             let ab = [a + x * side, b + y * side];
             wall_point::seen(scene, pixel, ab, side * side)

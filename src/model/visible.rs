@@ -4,11 +4,13 @@ use rayon::prelude::*;
 
 use super::cells::HiddenCell;
 use super::cut::Cut;
+use super::divided;
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
 use super::obstacles::obstacles;
 use super::occlusion::{Both, Obstructed};
+use super::parts::HiddenParts;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
@@ -18,8 +20,9 @@ pub struct Visible {
     /// Φcam with occlusion over Φcam without, 0 to 1, pixels × spots.
     pub share: Matrix,
     /// How far off that may be: the larger of what the last halving of the cells changed and half
-    /// of what the one before changed. An estimate: edges of shadows make the integrand bend, and
-    /// what is smaller than the last cells may be missed where it is asked ray by ray.
+    /// of what the one before changed, and what another division of footprints and spots changes.
+    /// An estimate: edges of shadows make the integrand bend, and what is smaller than the last
+    /// cells may be missed where it is asked ray by ray.
     pub bound: Matrix,
     /// Cells of the hidden surfaces, in the last step.
     pub points: usize,
@@ -31,15 +34,15 @@ const TARGET: f64 = 3e-4;
 /// is at least so many times what the entries change on average (in 1e5 normal deviates one exceeds
 /// 4.4).
 const SCATTER: f64 = 4.5;
-/// Level of the rule on spots.
-const LEVEL: usize = 1;
 /// Entries of each side that are held at once.
 const HELD: usize = 1 << 22;
 
 /// Φcam past everything that stands in the way over Φcam with nothing in the way, both by the same
 /// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four
 /// until Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (8e6
-/// where they are asked ray by ray). `None` where nothing can stand in the way.
+/// where they are asked ray by ray). Footprints and spots are divided likewise, for the cells that
+/// are cut once; what another division changes then is added. `None` where nothing can stand in the
+/// way.
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
@@ -51,44 +54,77 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
     if obstacles.is_empty() {
         return Ok(None);
     }
-    let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
-    let lit = cut.lit(scene, LEVEL);
-    let walls = scene.camera.pixels() + lit.iter().map(Vec::len).sum::<usize>();
-    let occlusion = Obstructed::new(scene, kernel, &obstacles, lit);
-    let mut parts = cut.hidden;
-    let mut cells = parts.cells();
-    let mut now = photographs(&occlusion, &cells);
+    let whole = Cut::new(scene, Extent::UNOBSTRUCTED).hidden;
+    let coarse = whole.cells();
+    let mut parts = whole.quartered();
+    let light = |parts: &HiddenParts<'_>| {
+        let mut cells = parts.cells();
+        cells.retain(|cell| cell.albedo > 0.0);
+        cells
+    };
+    let mut cells = light(&parts);
+    let by = |division| {
+        let past = divided::past(scene, kernel, &obstacles, division);
+        let phi = photographs(&past, &cells);
+        Ok::<_, ModelError>((past, phi))
+    };
+    let walls = divided::settled(
+        by,
+        |(past, _)| divided::can_be_finer(past, cells.len(), 1.0),
+        |(_, now), (_, next)| moved(&(share(next) - share(now)), now),
+        TARGET,
+    )?;
+    let (occlusion, mut next) = walls.used;
+    let others = walls.other.map(|(_, phi)| [share(&next), share(&phi)]);
+    let mut now = photographs(&occlusion, &coarse);
     let mut before: Option<Matrix> = None;
     loop {
-        parts = parts.quartered();
-        cells = parts.cells();
-        cells.retain(|cell| cell.albedo > 0.0);
-        let next = photographs(&occlusion, &cells);
-        let (share, old) = (share(&next), share(&now));
+        let (mut share, old) = (share(&next), share(&now));
         let change = (&share - old).abs();
-        let moved = change.component_mul(&next[0]).norm() / next[1].norm().max(f64::MIN_POSITIVE);
-        let exhausted = 4.0 * (cells.len() * walls) as f64 > occlusion.most_pairs();
-        if before.is_some() && (exhausted || moved < TARGET) {
+        let exhausted = 4.0 * (cells.len() * occlusion.walls) as f64 > occlusion.most_pairs();
+        if let Some(before) = &before
+            && (exhausted || moved(&change, &next) < TARGET)
+        {
             let least = if occlusion.by_rays() {
                 SCATTER * scatter(&change)
             } else {
                 0.0
             };
-            let bound = match before {
-                None => change,
-                Some(before) => change.zip_map(&before, |now, then| match now.max(0.5 * then) {
-                    0.0 => 0.0,
-                    bound => bound.max(least),
-                }),
-            };
+            let mut bound = change.zip_map(before, |now, then| match now.max(0.5 * then) {
+                0.0 => 0.0,
+                bound => bound.max(least),
+            });
+            if let Some([used, other]) = &others {
+                bound += (other - used).abs();
+                if walls.is_settled {
+                    share = share.zip_zip_map(used, other, finer);
+                }
+            }
             return Ok(Some(Visible {
                 share,
                 bound,
                 points: cells.len(),
             }));
         }
-        (now, before) = (next, Some(change));
+        parts = parts.quartered();
+        cells = light(&parts);
+        let finer = photographs(&occlusion, &cells);
+        (now, before, next) = (next, Some(change), finer);
     }
+}
+
+/// A share by the division of which fewer cells have `used`, as another changes it to `other`.
+fn finer(share: f64, used: f64, other: f64) -> f64 {
+    if used > 0.0 {
+        share * (other / used)
+    } else {
+        share + other
+    }
+}
+
+/// What shares change in Φ with what stands in the way, over all of it.
+fn moved(change: &Matrix, [all, left]: &[Matrix; 2]) -> f64 {
+    change.component_mul(all).norm() / left.norm().max(f64::MIN_POSITIVE)
 }
 
 /// Root mean square of the changes that are not 0.

@@ -2,9 +2,11 @@
 //! transport.
 
 mod accuracy;
+mod bayes;
 mod brdf;
 mod closed_forms;
 mod counts;
+mod divided;
 mod edges;
 mod indicator;
 mod known;

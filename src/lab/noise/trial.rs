@@ -34,7 +34,7 @@ pub(super) fn measure(
     // The reflectances alone are measured.
     let options = Options {
         uncertainty: Uncertainty::StandardError,
-        probabilities: false,
+        spreads: false,
         ..Options::default()
     };
     let found = photographs

@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::model::cells::cells_of_elements;
-use crate::model::cut::Cut;
-use crate::model::extent::Extent;
+use crate::model::divided;
 use crate::model::obstacles::obstacles;
 use crate::scene::{Parameter, file::SceneFile};
 
@@ -30,8 +29,7 @@ fn cells(scene: &Scene) -> Vec<HiddenCell> {
 }
 
 fn past(scene: &Scene) -> Obstructed<'_> {
-    let lit = Cut::new(scene, Extent::UNOBSTRUCTED).lit(scene, 1);
-    Obstructed::new(scene, Kernel::Physical, &obstacles(scene), lit)
+    divided::past(scene, Kernel::Physical, &obstacles(scene), 0)
 }
 
 /// Light of all pairs, pixels and spots by cells.

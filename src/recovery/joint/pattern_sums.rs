@@ -30,6 +30,30 @@ impl WeighedPatterns {
         let (light, _) = self.weights.iter().max_by(order)?;
         Some((light, self.share(light)))
     }
+
+    /// Of the likeliest patterns, which together have `share` of the weight, the one that is
+    /// expected to have the most elements right: the largest Σ_j P(element j is what s_j says).
+    pub(super) fn nearest(&self, share: f64) -> Option<&Vec<bool>> {
+        let mut order: Vec<(&Vec<bool>, f64)> = self.weights.iter().map(|(s, w)| (s, *w)).collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(b.0)));
+        let all: f64 = order.iter().map(|(_, weight)| weight).sum();
+        let mut before = 0.0;
+        let likeliest = order.into_iter().take_while(|(_, weight)| {
+            let within = before < share * all;
+            before += weight;
+            within
+        });
+        let light = self.moments.light();
+        let right = |pattern: &[bool]| -> f64 {
+            let each = pattern.iter().zip(light.iter());
+            each.map(|(lit, p)| if *lit { *p } else { 1.0 - p }).sum()
+        };
+        // The likelier of equals.
+        likeliest
+            .map(|(pattern, _)| (pattern, right(pattern)))
+            .reduce(|best, next| if next.1 > best.1 { next } else { best })
+            .map(|(pattern, _)| pattern)
+    }
 }
 
 /// What was summed over patterns and levels.
@@ -181,4 +205,31 @@ impl Moments {
 /// Standard deviation of what has this mean and mean square.
 fn deviation(mean: f64, square: f64) -> f64 {
     (square - mean * mean).max(ROUNDING * square).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: elements are light with 0.65, 0.45, 0.45, 0.4, so that of 0000, the likeliest, 2.05
+    /// are expected to be right and of 1110 2.15; 1000, of 2.35, is none that was met.
+    #[test]
+    fn most_elements_right_by_hand() {
+        let [o, i] = [false, true];
+        let patterns = [
+            (vec![o, o, o, o], 0.35),
+            (vec![i, i, i, o], 0.25),
+            (vec![i, i, o, i], 0.2),
+            (vec![i, o, i, i], 0.2),
+        ];
+        let mut moments = Moments::new(4);
+        for (light, weight) in &patterns {
+            moments.add(light, *weight, [[0.0; 2], [1.0; 2]]);
+        }
+        let weights = patterns.into_iter().collect();
+        let found = WeighedPatterns { moments, weights };
+        let near = |share| found.nearest(share).unwrap().clone();
+        assert_eq!(near(0.3), [o, o, o, o]);
+        assert_eq!(near(0.95), [i, i, i, o]);
+    }
 }

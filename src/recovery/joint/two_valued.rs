@@ -3,9 +3,11 @@
 //!
 //! The pattern is one that no change of one or two elements improves, and not always the best of
 //! all ([`super::pattern_search`]); or the likeliest where neighbours may be alike, if that is
-//! settled and the photographs say that they are. The reported gap says how far it can be above the
-//! best: with given levels above what branch and bound left open (zero: proved best), with
-//! estimated ones above the minimum over all 0 ≤ ρ ≤ 1.
+//! settled and the photographs say that they are. Else, where levels are given and all patterns
+//! were summed, it is the one of those that fit that is expected to have the most elements right:
+//! the best fit is to noise too. The reported gap says how far it can be above the best: with given
+//! levels above what branch and bound left open (zero: proved best), with estimated ones above the
+//! minimum over all 0 ≤ ρ ≤ 1.
 //!
 //! The probabilities are sums over all patterns of few elements ([`super::enumerated`]), of more
 //! over the likeliest and by sampling ([`super::sampled`]), every pattern as likely beforehand.
@@ -36,6 +38,9 @@ const MOST: f64 = 400_000.0;
 /// probability there, and the photographs are likelier by at least e to this if they are alike.
 const SETTLED: f64 = 0.5;
 const TELLS: f64 = 3.0;
+/// Probability of the likeliest patterns together, of which the picture is one: what is likelier of
+/// each element need not fit the photographs as a whole.
+const CREDIBLE: f64 = 0.95;
 /// Share of the probability that must be summed pattern by pattern for another prior.
 const LISTED: f64 = 0.99;
 
@@ -205,6 +210,13 @@ pub(in crate::recovery) fn recover(
     if let Some(found) = settled.filter(|found| found.light != best.light) {
         status = "the likeliest pattern where neighbours are alike";
         best = found;
+    }
+    let all = summed.as_ref().filter(|s| s.sum == Sum::Exhaustive);
+    let all = all.filter(|_| given.is_some() && !settled_if_alike);
+    let nearest = all.and_then(|all| all.patterns.nearest(CREDIBLE));
+    if let Some(light) = nearest.filter(|light| **light != best.light) {
+        status = "the pattern that is expected to have most elements right";
+        best = search.fit(light.clone());
     }
     let objective = 0.5 * best.misfit;
     let shown = best.values();

@@ -112,8 +112,32 @@ fn probabilities_are_those_of_all_patterns() {
     });
     assert!((&patterns.light - &light).amax() < 1e-6, "{light}");
     assert!(light.iter().any(|p| (0.1..0.9).contains(p)), "{light}");
-    assert!((patterns.pattern - 1.0 / sum).abs() < 1e-6);
-    // The best pattern is that of the least χ²; evidences are over the best fit of all numbers.
+    // Of the likeliest patterns, 0.95 together, the picture has the most elements expected right.
+    let mut order: Vec<usize> = (0..512).collect();
+    order.sort_by(|a, b| all[*a].total_cmp(&all[*b]));
+    let mut before = 0.0;
+    let likely = order.into_iter().take_while(|set| {
+        let within = before < 0.95 * sum;
+        before += weight(*set);
+        within
+    });
+    let likely: Vec<usize> = likely.collect();
+    let right = |set: usize| -> f64 {
+        let of = |j: usize| {
+            if set >> j & 1 == 1 {
+                light[j]
+            } else {
+                1.0 - light[j]
+            }
+        };
+        (0..9).map(of).sum()
+    };
+    let lit = (0..9).filter(|j| found.reflectance[*j] > 0.5);
+    let picture: usize = lit.map(|j| 1 << j).sum();
+    let most = likely.iter().map(|set| right(*set)).fold(0.0, f64::max);
+    assert!(likely.contains(&picture) && (right(picture) - most).abs() < 1e-6);
+    assert!((patterns.pattern - weight(picture) / sum).abs() < 1e-6);
+    // Evidences are over the best fit of all numbers.
     let free = recover(Method::JointUnbounded, &problem, &by_entry()).unwrap();
     let best = (&phi - bench.phi(&free.reflectance)).component_div(&stderr);
     let evidence = libm::log(sum / 512.0) - 0.5 * (least - best.norm_squared());
