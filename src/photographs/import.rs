@@ -14,6 +14,7 @@ use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
+use crate::matrix::Matrix;
 use crate::num::digits::figure;
 use crate::scene::Scene;
 
@@ -66,7 +67,10 @@ pub fn import(
     };
     let noise = given.or(line.map(|l| l.noise));
     let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
+    let left_out = LeftOut::of(&columns.left_out);
     let mut warnings = unsaid(set, &placing);
+    warnings.extend(little_left(&left_out));
+    warnings.extend(no_light(&columns.phi));
     let view = &scene.camera.view;
     if placing.fitted.is_none() {
         let extent = set.crop.map(|c| [c.width, c.height]);
@@ -108,7 +112,7 @@ pub fn import(
         mark_residuals: fitted.map_or(Vec::new(), |f| f.residuals),
         gains: columns.gains,
         common: columns.common,
-        left_out: LeftOut::of(&columns.left_out),
+        left_out,
         warnings,
         files: reader.sources(),
     };
@@ -119,6 +123,40 @@ pub fn import(
         mean: (columns.mean, shots.size),
         mapping,
         account,
+    })
+}
+
+/// That most entries are left out, or all.
+fn little_left(found: &LeftOut) -> Option<String> {
+    let reasons = [
+        ("saturated", found.saturated),
+        ("dead", found.dead),
+        ("in a halo", found.halo),
+        ("outside of their photograph", found.outside),
+        ("without one", found.missing),
+    ];
+    let reasons = reasons.iter().filter(|(_, count)| *count > 0);
+    let reasons: Vec<String> = reasons.map(|(why, n)| format!("{n} {why}")).collect();
+    let nothing = if found.left_out == found.entries {
+        ", so that nothing can be recovered"
+    } else {
+        ""
+    };
+    (2 * found.left_out > found.entries).then(|| {
+        format!(
+            "{} of {} entries are left out ({}){nothing}: check `saturation`, `full_scale`, `dead`, `flat`, `halo` and `crop`",
+            found.left_out,
+            found.entries,
+            reasons.join(", ")
+        )
+    })
+}
+
+/// That the light adds up to nothing, but for rounding, or to less.
+fn no_light(phi: &Matrix) -> Option<String> {
+    let all: f64 = phi.iter().map(|x| x.abs()).sum();
+    (phi.sum() <= 1e-9 * all).then(|| {
+        "the light of all photographs adds up to nothing, or less: check the dark frames, and whether the response fits".to_owned()
     })
 }
 

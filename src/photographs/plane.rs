@@ -183,6 +183,28 @@ pub(super) fn same_size(
     ))
 }
 
+/// Refuses a photograph whose integers reach to another value than those of the first: a stored
+/// value would mean another light.
+///
+/// # Errors
+/// [`PhotographError::Refused`].
+pub(super) fn same_full_scale(
+    name: &str,
+    found: Option<f64>,
+    expected: Option<f64>,
+) -> Result<(), PhotographError> {
+    let (Some(found), Some(expected)) = (found, expected) else {
+        return Ok(());
+    };
+    if found == expected {
+        return Ok(());
+    }
+    Err(refused(
+        format!("{name} stores values up to {found}, the first photograph up to {expected}"),
+        "give photographs of one bit depth, or `full_scale` where a stored value means the same in all",
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

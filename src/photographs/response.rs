@@ -80,10 +80,11 @@ impl Response {
     /// A power law of the full scale.
     ///
     /// # Errors
-    /// [`PhotographError::Refused`] for an exponent or a scale that is not positive.
+    /// [`PhotographError::Refused`] for an exponent that no camera has (below 0.1 or above 10) and
+    /// a scale that is not positive.
     pub fn gamma(exponent: f64, full_scale: f64) -> Result<Self, PhotographError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
-        if positive(exponent) && positive(full_scale) {
+        if (0.1..=10.0).contains(&exponent) && positive(full_scale) {
             return Ok(Self::Gamma {
                 exponent,
                 full_scale,
@@ -91,7 +92,7 @@ impl Response {
         }
         Err(refused(
             format!("gamma {exponent} of the full scale {full_scale} has no meaning"),
-            "use positive numbers, e.g. gamma = 2.2",
+            "use a gamma from 0.1 to 10, e.g. 2.2, and a full scale above 0",
         ))
     }
 

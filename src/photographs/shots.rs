@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::error::{PhotographError, refused};
 use super::noise::{PhotonTransferFit, Repeated, photon_transfer};
 use super::pattern::expanded;
-use super::plane::{Averaged, Chosen, Plane, linearised, same_size};
+use super::plane::{Averaged, Chosen, Plane, linearised, same_full_scale, same_size};
 use super::read::Reader;
 use super::response::{Response, ResponseTable, response_table};
 use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
@@ -24,6 +24,8 @@ pub(super) struct Shots<'a> {
     pub takes: Vec<Take>,
     /// Columns and rows.
     pub size: [usize; 2],
+    /// Largest value that the first photograph's integers can have.
+    full_scale: Option<f64>,
     /// Averaged dark frames, with the exposure time of each.
     darks: Vec<(Option<f64>, Averaged)>,
     /// Averaged photographs of even radiance, and their dark frames.
@@ -48,7 +50,7 @@ impl<'a> Shots<'a> {
         let first = first.first();
         let first =
             first.ok_or_else(|| refused("the first file has no photograph", "name another"))?;
-        let size = [first.width, first.height];
+        let (size, full_scale) = ([first.width, first.height], first.full_scale);
         let response = match &set.response {
             None => None,
             Some(name) => Some(response_table(name, &reader.bytes(&folder.join(name))?)?),
@@ -67,6 +69,7 @@ impl<'a> Shots<'a> {
             response,
             takes,
             size,
+            full_scale,
             darks: Vec::new(),
             flat: None,
             dead: Vec::new(),
@@ -98,6 +101,9 @@ impl<'a> Shots<'a> {
     /// One channel of a photograph as light.
     fn plane(&self, name: &str, samples: &Samples) -> Result<Plane, PhotographError> {
         same_size(name, [samples.width, samples.height], self.size)?;
+        if self.set.full_scale.is_none() {
+            same_full_scale(name, samples.full_scale, self.full_scale)?;
+        }
         let full_scale = self.set.full_scale.or(samples.full_scale);
         let response = match (&self.response, self.set.gamma) {
             (Some(table), _) => Response::Table(table.clone()),
@@ -127,6 +133,12 @@ impl<'a> Shots<'a> {
         let mut mean: Option<Averaged> = None;
         for path in paths {
             let name = reader.name(path);
+            if self.takes.iter().any(|take| take.path == *path) {
+                return Err(refused(
+                    format!("{name} is named as a photograph, and as a dark frame or flat field"),
+                    "name every file once",
+                ));
+            }
             for samples in reader.photographs(path)? {
                 let plane = self.plane(&name, &samples)?;
                 match &mut mean {

@@ -1,5 +1,6 @@
 //! Which photograph is of which spot.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::error::{PhotographError, refused};
@@ -43,7 +44,7 @@ pub(super) fn takes(
             gain: 1.0,
             gain_error: 0.0,
         };
-        return Ok(paths.into_iter().map(take).collect());
+        return once(paths.into_iter().map(take).collect());
     }
     let places = positions(tables)?;
     let numbered = tables.iter().filter(|t| t.spot.is_some()).count();
@@ -98,7 +99,20 @@ pub(super) fn takes(
             ));
         }
     }
-    Ok(takes)
+    once(takes)
+}
+
+/// Refuses a file that is named twice: its noise would count as that of two photographs, or two
+/// spots would have one.
+fn once(takes: Vec<Take>) -> Result<Vec<Take>, PhotographError> {
+    let mut named = BTreeSet::new();
+    match takes.iter().find(|take| !named.insert(&take.path)) {
+        None => Ok(takes),
+        Some(twice) => Err(refused(
+            format!("{} is named twice", twice.path.display()),
+            "name every photograph once",
+        )),
+    }
 }
 
 /// Refuses dark frames of no stated exposure time for photographs of several: dark current grows

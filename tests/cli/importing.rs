@@ -425,6 +425,45 @@ fn what_does_not_fit_is_refused_and_nothing_is_written() {
     w.refuses_within(3 << 20, PLAIN, &["`in/input_5.png`", "2147483647"]);
 }
 
+/// What would come out as numbers that mean nothing: other bit depths, a file in two roles, a
+/// response that no camera has; and photographs of which nothing counts are told.
+#[test]
+fn numbers_without_meaning_are_refused_or_told() {
+    let w = with_photographs();
+    let import = |list: &str, words: &[&str]| {
+        w.write("bad.toml", list);
+        w.refuses("import bad.toml -o out", words);
+    };
+    let plain = "scene = \"tiny.toml\"\n";
+    let frames = format!("{plain}frames = \"in/input_*.png\"\n");
+    import(&format!("{frames}gamma = 1e308\n"), &["gamma", "0.1 to 10"]);
+    import(
+        &format!("{frames}dark = \"in/input_3.png\"\n"),
+        &["in/input_3.png", "dark frame", "once"],
+    );
+    let frame =
+        |k: usize, spot: usize| format!("[[frame]]\nfile = \"in/input_{k}.png\"\nspot = {spot}\n");
+    let twice: String = (0..8).map(|spot| frame(spot.min(6), spot)).collect();
+    import(&format!("{plain}{twice}"), &["input_6.png is named twice"]);
+    // All entries, and most of them: the photographs from the third on.
+    for (saturation, words) in [
+        (
+            50,
+            "48 of 48 entries are left out (48 saturated), so that nothing",
+        ),
+        (2100, "36 of 48 entries are left out (36 saturated): check"),
+    ] {
+        w.write("few.toml", format!("{frames}saturation = {saturation}\n"));
+        let told = w.phicam("import few.toml -o few --replace").exits(0);
+        let said = told.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains(words), "{}", told.account());
+    }
+
+    let bytes: Vec<u8> = (0..24).flat_map(|k| [k; 3]).collect();
+    w.write("in/input_5.png", rgb_png([6, 4], &bytes, None).unwrap());
+    w.refuses(PLAIN, &["in/input_5.png stores values up to 255", "65535"]);
+}
+
 /// One file of all frames, from NumPy or MATLAB, and its cures.
 #[test]
 fn stacks_of_other_programs_are_read() {
