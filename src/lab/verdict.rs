@@ -5,7 +5,7 @@ mod causes;
 use super::agreement::{Agreement, Entry, EntryBound};
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
 use super::gains::words;
-use super::score::Deviation;
+use super::score::{Deviation, Score};
 use super::summary::facts;
 use crate::num::digits::{figure, significant};
 
@@ -100,6 +100,9 @@ impl Agreement {
             told.push(("fitted first", self.fitted_first()));
         }
         told.push(("test", test));
+        if !self.agrees && self.evidence {
+            told.push(("rejected by", self.rejected_by()));
+        }
         if !self.agrees {
             let largest = |all: &[Option<f64>]| {
                 let known = all.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?)));
@@ -116,6 +119,20 @@ impl Agreement {
             }
         }
         told
+    }
+
+    /// The tests that the model does not pass.
+    fn rejected_by(&self) -> String {
+        let share = self.significance / if self.score.is_some() { 3.0 } else { 2.0 };
+        let scored = self.score.as_ref().is_some_and(Score::rejects);
+        let tests = [
+            ("χ²", self.chi2_p < share),
+            ("the largest |z|", self.largest_p < share),
+            ("the fit of a single deviation of the scene", scored),
+        ];
+        let failed = tests.iter().filter(|(_, fails)| *fails);
+        let failed: Vec<&str> = failed.map(|(name, _)| *name).collect();
+        format!("{} (at {} each)", failed.join(", "), figure(share, 2))
     }
 
     /// What was fitted before the test, and is not seen by it.

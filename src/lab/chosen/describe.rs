@@ -48,17 +48,25 @@ pub(in crate::lab) fn words(found: &Recovered, explains: bool) -> String {
 /// What is known of a pattern of two levels, first by what its picture goes by.
 fn patterns(of: &Patterns) -> String {
     let assumed = of.assumed();
+    let known = assumed.sum.converged();
     // Levels that were given are taken for the surface's.
-    let exact = match assumed.exact {
+    let exact = match assumed.exact.filter(|_| known) {
         Some(exact) => format!("; exactly two reflectances have probability {exact:.3}"),
         None => format!("; {TWO}"),
     };
     let beforehand = beforehand(of);
+    let said = if known {
+        format!(
+            "this pattern has probability {:.3}, {}, {}",
+            assumed.pattern,
+            undecided(assumed),
+            levels(assumed)
+        )
+    } else {
+        "too few draws tell how likely this pattern is".to_owned()
+    };
     format!(
-        "{exact}, if the scale is right, and {beforehand}, this pattern has probability {:.3}, {}, {} ({})",
-        assumed.pattern,
-        undecided(assumed),
-        levels(assumed),
+        "{exact}, if the scale is right, and {beforehand}, {said} ({})",
         how(assumed.sum)
     ) + &otherwise(of)
 }
