@@ -228,16 +228,13 @@ fn summary(account: &ImportAccount, has_noise: bool, dir: &Path) -> String {
         account.scene,
         account.unit
     );
+    let reasons = left.reasons().map(|(why, n)| format!("{why} {n}"));
     let _ = writeln!(
         text,
-        "  left out: {} of {} entries (saturated {}, dead {}, halo {}, outside {}, no photograph {})",
+        "  left out: {} of {} entries ({})",
         left.left_out,
         left.entries,
-        left.saturated,
-        left.dead,
-        left.halo,
-        left.outside,
-        left.missing
+        reasons.join(", ")
     );
     if let Some(rms) = account.mark_rms {
         let error = account

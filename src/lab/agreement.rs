@@ -109,6 +109,11 @@ pub struct Agreement {
 /// Entries listed by name.
 const WORST: usize = 10;
 
+/// The significance level of each test, where deviations of the scene are tested or not.
+pub(super) fn share(significance: f64, deviations: bool) -> f64 {
+    significance / if deviations { 3.0 } else { 2.0 }
+}
+
 /// Compares entry by entry. Returns the verdict (with empty `kernel` and `integration`) and the z
 /// of every entry, 0 for one that is left out.
 ///
@@ -159,7 +164,7 @@ pub fn agree(
         Errors::Everywhere => 1.0,
     };
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
-    let share = test.significance / if derivatives.is_some() { 3.0 } else { 2.0 };
+    let share = share(test.significance, derivatives.is_some());
     let largest_p = sidak_p(normal_two_sided(largest), entries as u64);
     let remaining = |theta: f64, d: &Matrix, columns: &std::ops::Range<usize>| {
         let own = columns.start * rows..columns.end * rows;

@@ -2,7 +2,7 @@
 
 mod causes;
 
-use super::agreement::{Agreement, Entry, EntryBound};
+use super::agreement::{Agreement, Entry, EntryBound, share};
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
 use super::gains::words;
 use super::score::{Deviation, Score};
@@ -123,7 +123,7 @@ impl Agreement {
 
     /// The tests that the model does not pass.
     fn rejected_by(&self) -> String {
-        let share = self.significance / if self.score.is_some() { 3.0 } else { 2.0 };
+        let share = share(self.significance, self.score.is_some());
         let scored = self.score.as_ref().is_some_and(Score::rejects);
         let tests = [
             ("χ²", self.chi2_p < share),

@@ -128,14 +128,7 @@ pub fn import(
 
 /// That most entries are left out, or all.
 fn little_left(found: &LeftOut) -> Option<String> {
-    let reasons = [
-        ("saturated", found.saturated),
-        ("dead", found.dead),
-        ("in a halo", found.halo),
-        ("outside of their photograph", found.outside),
-        ("without one", found.missing),
-    ];
-    let reasons = reasons.iter().filter(|(_, count)| *count > 0);
+    let reasons = found.reasons().into_iter().filter(|(_, count)| *count > 0);
     let reasons: Vec<String> = reasons.map(|(why, n)| format!("{n} {why}")).collect();
     let nothing = if found.left_out == found.entries {
         ", so that nothing can be recovered"

@@ -37,6 +37,17 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
+    /// Reasons with the entries that have them.
+    pub fn reasons(&self) -> [(&'static str, usize); 5] {
+        [
+            ("saturated", self.saturated),
+            ("dead", self.dead),
+            ("halo", self.halo),
+            ("outside", self.outside),
+            ("no photograph", self.missing),
+        ]
+    }
+
     /// Of a matrix of codes.
     pub(super) fn of(codes: &Matrix) -> Self {
         let with = |code: u8| codes.iter().filter(|c| **c as u8 & code != 0).count();

@@ -343,15 +343,19 @@ fn arguments_take_their_place_before_the_list_is_checked() {
     assert_eq!(w.read("foreign/phi.npy"), b"mine");
 }
 
+/// A list of the tiny bench, but for its photographs.
+const LIST: &str = "scene = \"tiny.toml\"\n";
+
+fn refuses_list(w: &Workspace, list: &str, words: &[&str]) {
+    w.write("bad.toml", list);
+    w.refuses("import bad.toml -o out", words);
+}
+
 #[test]
 fn what_does_not_fit_is_refused_and_nothing_is_written() {
     let w = with_photographs();
-    let import = |list: &str, words: &[&str]| {
-        w.write("bad.toml", list);
-        w.refuses("import bad.toml -o out", words);
-    };
-    let plain = "scene = \"tiny.toml\"\n";
-    let frames = format!("{plain}frames = \"in/input_*.png\"\n");
+    let import = |list: &str, words: &[&str]| refuses_list(&w, list, words);
+    let (plain, frames) = (LIST, format!("{LIST}frames = \"in/input_*.png\"\n"));
     import(
         &format!("{frames}dakr = \"x\"\n"),
         &["bad.toml:3", "did you mean `dark`"],
@@ -430,12 +434,8 @@ fn what_does_not_fit_is_refused_and_nothing_is_written() {
 #[test]
 fn numbers_without_meaning_are_refused_or_told() {
     let w = with_photographs();
-    let import = |list: &str, words: &[&str]| {
-        w.write("bad.toml", list);
-        w.refuses("import bad.toml -o out", words);
-    };
-    let plain = "scene = \"tiny.toml\"\n";
-    let frames = format!("{plain}frames = \"in/input_*.png\"\n");
+    let import = |list: &str, words: &[&str]| refuses_list(&w, list, words);
+    let (plain, frames) = (LIST, format!("{LIST}frames = \"in/input_*.png\"\n"));
     import(&format!("{frames}gamma = 1e308\n"), &["gamma", "0.1 to 10"]);
     import(
         &format!("{frames}dark = \"in/input_3.png\"\n"),

@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use crate::counts::normal_numbers;
 use phicam::matrix::Matrix;
 use phicam::metrics::mtf_normalized;
 use phicam::model::{Kernel, MatrixModel};
@@ -16,19 +17,6 @@ use phicam::scene::Scene;
 const DRAWS: u64 = 200;
 /// The modulation that is held.
 const HELD: f64 = 0.9;
-
-/// Standard normal numbers by SplitMix64 and Box–Muller.
-fn normal(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    let mut uniform = move || {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 * 0.5f64.powi(53) + 0.5f64.powi(54)
-    };
-    move || (-2.0 * libm::log(uniform())).sqrt() * libm::cos(std::f64::consts::TAU * uniform())
-}
 
 /// A board and the model that photographs and inverts it.
 struct Board {
@@ -54,7 +42,7 @@ impl Board {
 
     /// One draw of photographs, each entry with noise of so much of itself.
     fn photographs(&self, noise: f64, scale_error: f64, seed: u64) -> [Matrix; 2] {
-        let mut normal = normal(seed);
+        let mut normal = normal_numbers(seed);
         let scale = (1.0 + scale_error * normal()).max(0.1);
         let deviates = self.exact.map(|_| normal());
         let stderr = self.exact.map(|x| noise * x);

@@ -239,7 +239,7 @@ fn a_laser_that_drifts_is_no_wrong_model() {
 }
 
 /// Standard normal numbers.
-fn normal_numbers(seed: u64) -> impl FnMut() -> f64 {
+pub(crate) fn normal_numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut stream = Stream::new(
         Sampling::Pcg,
         Key {

@@ -36,10 +36,9 @@ impl WeighedPatterns {
     pub(super) fn nearest(&self, share: f64) -> Option<&Vec<bool>> {
         let mut order: Vec<(&Vec<bool>, f64)> = self.weights.iter().map(|(s, w)| (s, *w)).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(b.0)));
-        let all: f64 = order.iter().map(|(_, weight)| weight).sum();
         let mut before = 0.0;
         let likeliest = order.into_iter().take_while(|(_, weight)| {
-            let within = before < share * all;
+            let within = before < share * self.moments.weight;
             before += weight;
             within
         });
