@@ -6,7 +6,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use phicam::model::{Differential, Fineness, Swept};
+use phicam::model::{Differential, Effort, Fineness, Swept};
 use phicam::scene::file::SceneFile;
 use phicam::scene::{Parameter, Scene, Velocity};
 
@@ -47,7 +47,9 @@ fn past_a_plate(c: &mut Criterion) {
     for (name, count) in [("the model", 0), ("one parameter", 1), ("three", 3)] {
         let moving = &velocities[..count];
         group.bench_function(name, |b| {
-            b.iter(|| Swept::new(black_box(&scene), Some([8, 8]), moving, 0.0).expect("a model"));
+            b.iter(|| {
+                Swept::new(black_box(&scene), Some([8, 8]), moving, Effort::USUAL).expect("a model")
+            });
         });
     }
     group.finish();

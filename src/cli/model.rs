@@ -64,7 +64,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
         "g23": g23,
         "phi": shown,
         "last_refinement": change,
-        "terms": model.factors.as_ref().map(|f| f.element.len()),
+        "terms": model.factors.as_ref().map(|f| f.terms.element.len()),
         "product_error": product_error,
     });
     output::result(args.json, &value, || {

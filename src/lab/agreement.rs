@@ -104,6 +104,9 @@ pub struct Agreement {
     pub score: Option<Score>,
     /// The entries with the largest |z|.
     pub worst: Vec<Entry>,
+    /// Light that the frames may hold and the model does not, in words.
+    #[serde(default)]
+    pub unmodelled: Vec<String>,
 }
 
 /// Entries listed by name.
@@ -218,6 +221,7 @@ pub fn agree(
             .collect(),
         score,
         worst: worst(&z, &evidence),
+        unmodelled: Vec::new(),
     };
     (agreement, z)
 }

@@ -136,7 +136,11 @@ fn went_by(choice: Choice) -> (Option<&'static str>, BTreeMap<&'static str, f64>
                 ("patches", patches as f64),
             ],
         ),
-        Choice::Averaged => ("averaged", vec![]),
+        Choice::Averaged { if_unalike } => {
+            let times =
+                if_unalike.map(|times| ("errors if neighbours are not alike, times", times));
+            ("averaged", times.into_iter().collect())
+        }
         Choice::Estimated => ("estimated", vec![]),
         Choice::Gcv {
             residual,

@@ -1,12 +1,12 @@
 //! What may be off in a scene, and what each deviation does to the model: derivatives by central
-//! differences of the quadrature.
+//! differences of the quadrature; of flat figures that stand in the way in closed form.
 
 use super::misplaced::{ALL, Misplaced, Size};
 use super::score::Parameter;
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
-use crate::model::{Kernel, Nodes, integrated};
-use crate::scene::Scene;
+use crate::model::{Effort, Kernel, MatrixModel, ModelError, Nodes, Occlusion, Swept, integrated};
+use crate::scene::{self, Scene};
 
 /// The scale of all light, the albedos, and everything that the tolerance study misplaces.
 pub(super) struct SceneDerivatives<'a> {
@@ -18,6 +18,8 @@ pub(super) struct SceneDerivatives<'a> {
     visible: Option<&'a Matrix>,
     step: f64,
     kinds: Vec<Kind>,
+    /// ∂Φ by shifts of what stands in the way.
+    obstacles: Vec<Matrix>,
     /// By index as for [`Self::of`].
     pub(super) parameters: Vec<Parameter>,
 }
@@ -30,6 +32,8 @@ enum Kind {
     /// The albedo of a surface.
     Albedo(usize),
     Misplaced(&'static Misplaced),
+    /// A shift of what stands in the way, by its index.
+    Obstacle(usize),
 }
 
 /// Relative change of an albedo, or of the view's size, percent.
@@ -60,6 +64,7 @@ impl<'a> SceneDerivatives<'a> {
         let scale = Parameter {
             name: "overall scale".to_owned(),
             unit: "%".to_owned(),
+            reach: None,
             same: vec![(power.to_owned(), 1.0), ("aperture".to_owned(), 1.0)],
             each_spot: None,
         };
@@ -71,6 +76,7 @@ impl<'a> SceneDerivatives<'a> {
             visible,
             step: step(scene),
             kinds: vec![Kind::Scale],
+            obstacles: Vec::new(),
             parameters: vec![scale],
         };
         let reflecting = scene.relays().chain(scene.hidden());
@@ -87,14 +93,28 @@ impl<'a> SceneDerivatives<'a> {
             let unit = what.size.unit(scene);
             found.add(Kind::Misplaced(what), what.name.to_owned(), unit, each);
         }
+        if visible.is_some() && kernel == Kernel::Physical {
+            let of = shifts(scene).unwrap_or_default();
+            for (index, (shift, rate)) in of.into_iter().enumerate() {
+                found.obstacles.push(rate);
+                found.add(Kind::Obstacle(index), shift.name, &shift.unit, None);
+            }
+        }
         found
     }
 
     fn add(&mut self, kind: Kind, name: String, unit: &str, each_spot: Option<&str>) {
+        let reach = match (kind, unit) {
+            (Kind::Albedo(_), _) => None,
+            (_, "deg") => Some(90.0),
+            (_, "%") => Some(100.0),
+            _ => Some(nearest_and_middle(self.scene)[1]),
+        };
         self.kinds.push(kind);
         self.parameters.push(Parameter {
             name,
             unit: unit.to_owned(),
+            reach,
             same: Vec::new(),
             each_spot: each_spot.map(str::to_owned),
         });
@@ -109,6 +129,7 @@ impl<'a> SceneDerivatives<'a> {
         let model = |scene: Scene| integrated(&scene, self.kernel, self.nodes).ok();
         let free = match kind {
             Kind::Scale => return Some(self.phi * 0.01),
+            Kind::Obstacle(index) => return Some(self.obstacles[index].clone()),
             Kind::Albedo(index) => {
                 let at = |sign: f64| {
                     model(
@@ -143,6 +164,26 @@ impl<'a> SceneDerivatives<'a> {
     }
 }
 
+/// Shifts of what stands in the way, and Σ_j ρ_j ∂A_j by each; not of what is not flat.
+///
+/// # Errors
+/// [`ModelError`].
+fn shifts(scene: &Scene) -> Result<Vec<(scene::Parameter, Matrix)>, ModelError> {
+    let shifts = scene::Parameter::of_occluders(scene);
+    let zero = vec![0.0; shifts.len()];
+    let velocities: Vec<_> = (0..shifts.len())
+        .map(|k| scene.velocity(&shifts, &zero, k))
+        .collect();
+    let Some(swept) = Swept::new(scene, None, &velocities, Effort::USUAL)? else {
+        return Ok(Vec::new());
+    };
+    let model = MatrixModel::with(scene, Kernel::Physical, None, Occlusion::Ignored)?;
+    let each = shifts.into_iter().zip(swept.rates);
+    Ok(each
+        .filter_map(|(shift, rate)| Some((shift, rate?.phi(&model.albedo))))
+        .collect())
+}
+
 /// How many times `phi`/100 a derivative is, if it is that.
 fn factor(d: &Matrix, phi: &Matrix) -> Option<f64> {
     let (dot, own, square) = (d.dot(phi), d.norm_squared(), phi.norm_squared());
@@ -152,6 +193,14 @@ fn factor(d: &Matrix, phi: &Matrix) -> Option<f64> {
 
 /// Step of a length.
 fn step(scene: &Scene) -> f64 {
+    let [nearest, middle] = nearest_and_middle(scene);
+    let fine = 1e-6 * middle;
+    (OF_NEAREST * nearest).clamp(fine, OF_MIDDLE * middle)
+}
+
+/// The shortest distance between what is lit or seen of the walls and the hidden surfaces, and that
+/// to their middles.
+fn nearest_and_middle(scene: &Scene) -> [f64; 2] {
     let spots = scene.laser.beams().iter().map(|s| s.target.position);
     let view = scene.camera.view.corners();
     let mut nearest = f64::INFINITY;
@@ -163,8 +212,7 @@ fn step(scene: &Scene) -> f64 {
             middle = middle.min(apart(surface.shape.at([0.5; 2]).position));
         }
     }
-    let fine = 1e-6 * middle;
-    (OF_NEAREST * nearest).clamp(fine, OF_MIDDLE * middle)
+    [nearest, middle]
 }
 
 /// Distance of the hidden surface's middle from the hinge; from its rim where there is none.

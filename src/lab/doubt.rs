@@ -6,7 +6,7 @@ use super::chosen::beforehand;
 use super::fit::Judged;
 use super::gains::drifting;
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
+use crate::recovery::{Choice, Method, Patterns, Recovered, Sum, Weighting};
 use misfit::misfit;
 
 /// More than this share of the elements is most of them.
@@ -23,6 +23,8 @@ const SELDOM: f64 = 1e-6;
 /// of one direction.
 const GAP: f64 = 0.1;
 
+/// Standard errors larger by more than this are others.
+const LARGER: f64 = 1.1;
 /// A probability below which exactly two reflectances are not to be taken for granted.
 const UNLIKELY: f64 = 0.5;
 /// A probability below which a pattern is one of many.
@@ -39,6 +41,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         overstated(judged),
         impossible(found),
         undetermined(found, judged),
+        alike_untold(found),
         few_directions(found),
         noise(found),
         on_bounds(found),
@@ -123,6 +126,21 @@ fn undetermined(found: &Recovered, judged: &Judged) -> Option<String> {
             stated.len()
         )
     })
+}
+
+/// Standard errors that take neighbours to be as alike as in most pictures, where the photographs
+/// do not say how alike they are.
+fn alike_untold(found: &Recovered) -> Option<String> {
+    let Choice::Averaged { if_unalike } = found.choice else {
+        return None;
+    };
+    let times = if_unalike.filter(|times| *times > LARGER && found.standard_error.is_some())?;
+    Some(format!(
+        "the photographs do not say how alike neighbouring elements are: standard errors and bands take \
+         that from pictures in general. Of elements that have nothing in common with their neighbours \
+         they are {} times as large. Use fewer --elements, or believe them of usual pictures only",
+        significant(times, 2)
+    ))
 }
 
 /// Most elements of a method without bounds where no surface is.

@@ -210,6 +210,7 @@ mod tolerance;
 mod traced;
 mod trust;
 mod unexplained;
+mod unmodelled;
 mod validation;
 mod verdict;
 mod which_errors;

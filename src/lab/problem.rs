@@ -2,7 +2,7 @@
 
 use super::validation::Integration;
 use crate::matrix::Matrix;
-use crate::model::{Kernel, MatrixModel, ModelError, Occlusion};
+use crate::model::{Factors, Kernel, MatrixModel, ModelError, Occlusion};
 use crate::recovery::{Problem, RecoveryError, Terms};
 use crate::scene::Scene;
 
@@ -47,10 +47,10 @@ pub(crate) fn problem<'a>(
     let product = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?;
     match &model.factors {
         None => Ok(product),
-        Some(factors) => product.with_terms(Terms {
-            c: &factors.camera,
-            d: &factors.laser,
-            element: &factors.element,
+        Some(Factors { terms, .. }) => product.with_terms(Terms {
+            c: &terms.camera,
+            d: &terms.laser,
+            element: &terms.element,
         }),
     }
 }

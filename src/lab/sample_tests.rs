@@ -111,6 +111,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
             modelled: 1e-12,
             z: 4.1,
         }],
+        unmodelled: Vec::new(),
     });
     let hidden: Vec<(String, [usize; 2])> = run
         .scene

@@ -23,6 +23,9 @@ pub struct Parameter {
     pub name: String,
     /// Unit of its deviation.
     pub unit: String,
+    /// The largest deviation that a scene can have, if there is one: what is fitted beyond is no
+    /// cause.
+    pub reach: Option<f64>,
     /// What else has the same derivative up to a factor: its name, and its deviation per deviation
     /// of this parameter, in the same unit.
     pub same: Vec<(String, f64)>,
@@ -58,12 +61,22 @@ pub struct Deviation {
     pub p: f64,
     /// Smallest deviation that the score test rejects 95 times in 100.
     pub detectable: f64,
+    /// The largest that a scene can have, if there is one.
+    #[serde(default)]
+    pub reach: Option<f64>,
     /// χ²/dof that remains with it fitted.
     pub chi2_per_dof: f64,
     /// What cannot be told from it by any light, with its deviation for this one.
     pub same: Vec<(String, f64)>,
     /// The spot, of a parameter of one spot.
     pub spot: Option<usize>,
+}
+
+impl Deviation {
+    /// Whether a scene can have it of this size.
+    pub(super) fn is_within_reach(&self, size: f64) -> bool {
+        self.reach.is_none_or(|reach| size.abs() <= reach)
+    }
 }
 
 /// All parameters, each fitted alone.
@@ -75,9 +88,9 @@ pub struct Score {
     pub deviations: Vec<Deviation>,
     /// Parameters of single spots.
     pub spots: Vec<Deviation>,
-    /// The most likely cause first: of the parameters beyond their limits the one that leaves the
-    /// least χ². Then all that explain the difference as well, after whose fit the first is not
-    /// missed at 1 %.
+    /// The most likely cause first: of the parameters beyond their limits, and within what a scene
+    /// can have, the one that leaves the least χ². Then all that explain the difference as well,
+    /// after whose fit the first is not missed at 1 %.
     pub likely: Vec<Deviation>,
     /// Parameters that change nothing or that the scene does not allow.
     pub untested: Vec<String>,
@@ -86,7 +99,15 @@ pub struct Score {
 impl Score {
     /// Whether a parameter is beyond its limit.
     pub fn rejects(&self) -> bool {
-        !self.likely.is_empty()
+        self.all().any(|d| self.is_beyond(d))
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Deviation> {
+        self.deviations.iter().chain(&self.spots)
+    }
+
+    fn is_beyond(&self, d: &Deviation) -> bool {
+        d.z.abs() > self.limits[usize::from(d.spot.is_some())]
     }
 }
 
@@ -132,6 +153,7 @@ pub(super) fn score(
                 z: fit.z(),
                 p: sidak_p(normal_two_sided(fit.z()), family as u64),
                 detectable: fit.detectable(limit),
+                reach: parameter.reach,
                 chi2_per_dof: remaining(fit.value, &d, &columns),
                 same: parameter.same.clone(),
                 spot,
@@ -158,19 +180,21 @@ fn likely(
     parameters: &[Parameter],
     derivatives: &[Option<Matrix>],
 ) -> Vec<Deviation> {
-    let all = || found.deviations.iter().chain(&found.spots);
-    let beyond = |d: &&Deviation| d.z.abs() > found.limits[usize::from(d.spot.is_some())];
+    let of = |d: &Deviation| {
+        parameters.iter().position(|p| match d.spot {
+            None => p.name == d.name,
+            Some(_) => p.each_spot.as_ref() == Some(&d.name),
+        })
+    };
+    let can_be = |d: &&Deviation| d.is_within_reach(d.value);
+    let all = || found.all().filter(can_be);
+    let beyond = |d: &&Deviation| found.is_beyond(d);
     let least = |a: &&Deviation, b: &&Deviation| a.chi2_per_dof.total_cmp(&b.chi2_per_dof);
     let Some(best) = all().filter(beyond).min_by(least) else {
         return Vec::new();
     };
-    let derivative = |d: &Deviation| {
-        let index = parameters.iter().position(|p| match d.spot {
-            None => p.name == d.name,
-            Some(_) => p.each_spot.as_ref() == Some(&d.name),
-        })?;
-        whole(&residual.evidence, derivatives[index].as_ref()?, d.spot)
-    };
+    let derivative =
+        |d: &Deviation| whole(&residual.evidence, derivatives[of(d)?].as_ref()?, d.spot);
     let Some(first) = derivative(best) else {
         return vec![best.clone()];
     };

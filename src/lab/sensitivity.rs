@@ -7,28 +7,20 @@ use rayon::prelude::*;
 use super::error::LabError;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
-use crate::num::linalg::triangle;
+use crate::num::linalg::{columns_times, triangle};
 
 /// Triangles that are joined at once.
 const TOGETHER: usize = 16;
 
 /// A_l\[p,j\] = ∂Φcam\[p,l\]/∂ρ_j of spot `l`, pixels × elements, W.
 pub(super) fn sensitivity(model: &MatrixModel, l: usize) -> Matrix {
-    let mut found = Matrix::zeros(model.camera_side.nrows(), model.albedo.len());
     match &model.factors {
         None => {
-            for (j, mut column) in found.column_iter_mut().enumerate() {
-                column.axpy(model.laser_side[(j, l)], &model.camera_side.column(j), 0.0);
-            }
+            let lit: Vec<f64> = model.laser_side.column(l).iter().copied().collect();
+            columns_times(model.camera_side.clone(), &lit)
         }
-        Some(factors) => {
-            for (s, j) in factors.element.iter().enumerate() {
-                let mut column = found.column_mut(*j);
-                column.axpy(factors.laser[(s, l)], &factors.camera.column(s), 1.0);
-            }
-        }
+        Some(factors) => factors.terms.frame(l, model.albedo.len()),
     }
-    found
 }
 
 /// R of J = Q R, min(rows, n) × n: JᵀJ = RᵀR.

@@ -134,7 +134,12 @@ impl SpotsStudy {
     fn reflecting(&self) -> usize {
         let reflects = |element: usize| self.model.albedo[element] > 0.0;
         match &self.model.factors {
-            Some(terms) => terms.element.iter().filter(|j| reflects(**j)).count(),
+            Some(factors) => factors
+                .terms
+                .element
+                .iter()
+                .filter(|j| reflects(**j))
+                .count(),
             None => (0..self.model.albedo.len())
                 .filter(|j| reflects(*j))
                 .count(),

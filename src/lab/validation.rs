@@ -1,7 +1,7 @@
 //! Traced Φcam against the matrix model of its scene.
 
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged};
+use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged, is_obstructed};
 use crate::num::linalg::LinalgError;
 use crate::num::statistics::sidak_threshold;
 use crate::recovery::{Nuisance, RecoveryError};
@@ -13,6 +13,7 @@ use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::other_light::Left;
 use super::score::Derivatives;
+use super::unmodelled::unmodelled;
 
 /// How the model integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,6 +190,11 @@ pub fn validate(
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
     agreement.occlusion = visible.map(|v| v.points);
+    agreement.unmodelled = unmodelled(scene);
+    if occlusion == Occlusion::Ignored && is_obstructed(scene) {
+        let told = "what stands in the way (`--no-occlusion` leaves it out)";
+        agreement.unmodelled.push(told.to_owned());
+    }
     Ok(Validation {
         agreement,
         z,

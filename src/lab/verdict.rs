@@ -102,6 +102,9 @@ impl Agreement {
         told.push(("test", test));
         if !self.agrees && self.evidence {
             told.push(("rejected by", self.rejected_by()));
+            if !self.unmodelled.is_empty() {
+                told.push(("not in the model", self.unmodelled.join("; ")));
+            }
         }
         if !self.agrees {
             let largest = |all: &[Option<f64>]| {

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::cells::{HiddenCell, cells_of_elements};
 use super::cut::Cut;
 use super::divided;
+use super::effort::{Effort, TARGET};
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
@@ -13,7 +14,6 @@ use super::terms::{Terms, compressed};
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
-use crate::num::linalg::rows_times;
 use crate::scene::{Scene, Surface};
 
 /// Element j's light between every spot and every pixel where something stands in the way:
@@ -25,12 +25,8 @@ use crate::scene::{Scene, Surface};
 /// the product of the means.
 #[derive(Clone, Debug)]
 pub struct Factors {
-    /// Pixels × terms.
-    pub camera: Matrix,
-    /// Terms × spots; with `camera` W.
-    pub laser: Matrix,
-    /// The element of each term, ascending.
-    pub element: Vec<usize>,
+    /// A_j.
+    pub terms: Terms,
     /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, and what
     /// another division of footprints and spots does.
     pub change: f64,
@@ -69,14 +65,11 @@ pub(super) type Shares = [Matrix; 2];
 
 /// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
 const MOST_HALVINGS: u32 = 5;
-/// Relative change below which no finer cells are tried; the next halving would change a fourth.
-pub(super) const TARGET: f64 = 1e-3;
 /// The same of what is extrapolated.
 const SMOOTH_TARGET: f64 = 1e-4;
-/// Cells at the end, of each that was cut once; and the share of all pairs that a finer division
-/// of footprints and spots may take then: descents ask for the light dozens of times.
+/// Cells at the end, of each that was cut once.
 const FINAL: usize = 16;
-const SHARE: f64 = 0.1;
+
 /// Level of the rule on footprints where nothing is in the way.
 const LEVEL: usize = 1;
 
@@ -95,7 +88,11 @@ pub(super) fn factors(
     } else {
         TARGET
     };
-    Ok(settled(scene, kernel, obstacles, grids, target)?.joined())
+    let effort = Effort {
+        target,
+        ..Effort::USUAL
+    };
+    Ok(settled(scene, kernel, obstacles, grids, effort)?.joined())
 }
 
 /// Elements in cells that are fine enough.
@@ -108,7 +105,7 @@ pub(super) struct Settled<'a> {
 }
 
 /// The elements of a scene, cells of them cut in four until all A_j together change by less than
-/// `target`, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
+/// the target, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
 /// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3; else
 /// footprints and spots are divided until that changes the A_j of elements cut once by less.
 ///
@@ -119,7 +116,7 @@ pub(super) fn settled<'a>(
     kernel: Kernel,
     obstacles: &[ShapeId],
     grids: &[ElementGrid],
-    target: f64,
+    Effort { target, share }: Effort,
 ) -> Result<Settled<'a>, ModelError> {
     let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
     let is_smooth = obstacles.is_empty();
@@ -150,7 +147,7 @@ pub(super) fn settled<'a>(
     };
     let walls = divided::settled(
         by,
-        |(past, _)| !is_smooth && divided::can_be_finer(&past.occlusion, FINAL * count(&of), SHARE),
+        |(past, _)| !is_smooth && divided::can_be_finer(&past.occlusion, FINAL * count(&of), share),
         |(_, now), (_, next)| moved(now, next),
         target,
     )?;
@@ -287,22 +284,11 @@ impl Settled<'_> {
             Matrix::from_fn(all.len(), spots, |j, l| share(all[j].lit[l])),
         ];
         let each: Vec<_> = all.iter().map(|own| (&own.camera, &own.laser)).collect();
-        let terms = Terms::stacked(&each, (pixels, spots));
         let factors = Factors {
-            camera: terms.camera,
-            laser: terms.laser,
-            element: terms.element,
+            terms: Terms::stacked(&each, (pixels, spots)),
             change: self.change,
             cells: self.cells.iter().map(Vec::len).sum(),
         };
         (factors, shares)
-    }
-}
-
-impl Factors {
-    /// Σ_j ρ_j A_j, pixels × spots, W.
-    pub fn phi(&self, albedo: &[f64]) -> Matrix {
-        let of_terms: Vec<f64> = self.element.iter().map(|j| albedo[*j]).collect();
-        &self.camera * rows_times(self.laser.clone(), &of_terms)
     }
 }

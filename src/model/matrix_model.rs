@@ -275,7 +275,7 @@ impl MatrixModel {
     /// stands in the way.
     pub fn product_error(&self) -> Option<f64> {
         let factors = self.factors.as_ref()?;
-        let phi = factors.phi(&self.albedo);
+        let phi = factors.terms.phi(&self.albedo);
         let norm = phi.norm();
         (norm > 0.0).then(|| (self.product() - phi).norm() / norm)
     }
@@ -288,7 +288,7 @@ impl MatrixModel {
     /// Φcam of elements with these albedos in place of the scene's.
     pub fn phi_of(&self, albedo: &[f64]) -> Matrix {
         match &self.factors {
-            Some(factors) => factors.phi(albedo),
+            Some(factors) => factors.terms.phi(albedo),
             None => self.product_of(albedo),
         }
     }
@@ -297,7 +297,7 @@ impl MatrixModel {
     pub fn scale(&mut self, factor: f64) {
         self.camera_side *= factor;
         if let Some(factors) = &mut self.factors {
-            factors.camera *= factor;
+            factors.terms.camera *= factor;
         }
     }
 }

@@ -18,6 +18,7 @@ mod converged;
 mod cut;
 mod differential;
 mod divided;
+mod effort;
 mod error;
 mod extent;
 mod factors;
@@ -39,6 +40,7 @@ mod wall_point;
 
 pub use converged::{Converged, Nodes, converged, integrated};
 pub use differential::{Differential, Fineness};
+pub use effort::Effort;
 pub use error::ModelError;
 pub use extent::{Extent, Occlusion, Take};
 pub use factors::{ElementGrid, Factors};

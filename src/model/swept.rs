@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 
 use super::cells::HiddenCell;
+use super::effort::Effort;
 use super::error::ModelError;
-use super::factors::{Past, TARGET, settled};
+use super::factors::{Past, settled};
 use super::kernel::Kernel;
 use super::matrix_model::element_grids;
 use super::obstacles::obstacles;
@@ -29,8 +30,7 @@ pub struct Swept {
 
 impl Swept {
     /// Of `scene`; `elements` replaces the elements a side that it gives, `velocities` are those by
-    /// the parameters. Cells of the elements are cut until that changes all A_j by less than
-    /// `change`, relatively, at least 1e-3. None where nothing stands in the way.
+    /// the parameters. None where nothing stands in the way.
     ///
     /// # Errors
     /// [`ModelError`].
@@ -38,20 +38,14 @@ impl Swept {
         scene: &Scene,
         elements: Option<[usize; 2]>,
         velocities: &[Velocity],
-        change: f64,
+        effort: Effort,
     ) -> Result<Option<Self>, ModelError> {
         let grids = element_grids(scene, elements)?;
         let obstacles = obstacles(scene);
         if obstacles.is_empty() {
             return Ok(None);
         }
-        let settled = settled(
-            scene,
-            Kernel::Physical,
-            &obstacles,
-            &grids,
-            change.max(TARGET),
-        )?;
+        let settled = settled(scene, Kernel::Physical, &obstacles, &grids, effort)?;
         let (factors, _) = settled.joined();
         let mut rates: Vec<Option<Terms>> = velocities.iter().map(|_| None).collect();
         let past = &settled.past;
@@ -72,11 +66,7 @@ impl Swept {
             }
         }
         Ok(Some(Self {
-            terms: Terms {
-                camera: factors.camera,
-                laser: factors.laser,
-                element: factors.element,
-            },
+            terms: factors.terms,
             elements: settled.cells.len(),
             rates,
         }))

@@ -2,7 +2,7 @@
 
 use super::error::ModelError;
 use crate::matrix::Matrix;
-use crate::num::linalg::svd;
+use crate::num::linalg::{rows_times, svd};
 
 /// Terms less than this share of an element's largest are left out.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -46,6 +46,12 @@ impl Terms {
             laser,
             element,
         }
+    }
+
+    /// Σ_j ρ_j A_j, pixels × spots, W.
+    pub fn phi(&self, albedo: &[f64]) -> Matrix {
+        let of_terms: Vec<f64> = self.element.iter().map(|j| albedo[*j]).collect();
+        &self.camera * rows_times(self.laser.clone(), &of_terms)
     }
 
     /// What frame `spot` shows of each element at albedo 1, pixels × elements, W.

@@ -78,6 +78,33 @@ impl Parameter {
         named(scene, name).map_err(|fault| parse::locate(&scene.name, &scene.text, fault))
     }
 
+    /// Shifts along u, v and the normal of what stands in the way: of each occluder, of all as one
+    /// body where there are many.
+    pub fn of_occluders(scene: &Scene) -> Vec<Self> {
+        let names: Vec<&str> = of_role(Role::Occluder, &scene.surfaces)
+            .filter(|(_, s)| !is_back(s, &scene.surfaces))
+            .map(|(_, s)| s.name.as_str())
+            .collect();
+        let bodies = if names.len() > MOST_BODIES {
+            vec!["occluders"]
+        } else {
+            names
+        };
+        let unit = scene.unit.symbol();
+        let shift = |(what, which): (&str, &str)| {
+            let name = format!("{what}.{which}");
+            let kind = of_surfaces(scene, what, which, &name).ok()?;
+            Some(Self {
+                unit: unit.to_owned(),
+                name,
+                kind,
+            })
+        };
+        let all = bodies.into_iter();
+        let all = all.flat_map(|what| ["u", "v", "normal"].map(|which| (what, which)));
+        all.filter_map(shift).collect()
+    }
+
     /// Whether it turns things: its unit is degrees.
     pub fn is_angle(&self) -> bool {
         self.unit == DEGREES
@@ -87,6 +114,18 @@ impl Parameter {
     pub fn is_percent(&self) -> bool {
         self.unit == PERCENT
     }
+}
+
+/// Occluders up to which each has shifts of its own.
+const MOST_BODIES: usize = 8;
+
+/// The name of a surface's other side.
+fn back(name: &str) -> String {
+    format!("{name} (back)")
+}
+
+fn is_back(surface: &Surface, all: &[Surface]) -> bool {
+    all.iter().any(|front| back(&front.name) == surface.name)
 }
 
 /// The table of uncertainties, checked.
@@ -195,7 +234,7 @@ fn of_surfaces(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Kin
         _ => None,
     };
     // The two sides of a surface stay together.
-    let back = format!("{what} (back)");
+    let back = back(what);
     let by_name = |s: &Surface| s.name == what || s.name == back;
     let is_name = scene.surfaces.iter().any(by_name);
     let concerned = |s: &Surface| {

@@ -5,7 +5,7 @@ use phicam::model::{Converged, Extent, Kernel, MatrixModel, converged};
 use phicam::scene::Scene;
 
 /// A wall in the plane x = 0 of the file, a board beside it, and a plate between.
-fn scene(laser: &str, view: &str, plate: &str) -> Scene {
+pub(super) fn scene(laser: &str, view: &str, plate: &str) -> Scene {
     let text = format!(
         "name = \"divided\"\nunit = \"cm\"\nmax_bounces = 3\naxes = {{ x = [0, 0, 1], y = [0, 1, 0] }}\n\
          [laser]\npower = 1.0\nwavelength = 500e-9\n{laser}\n\
@@ -22,7 +22,7 @@ fn scene(laser: &str, view: &str, plate: &str) -> Scene {
     Scene::from_toml("divided", &text).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn by_quadrature(scene: &Scene) -> Converged {
+pub(super) fn by_quadrature(scene: &Scene) -> Converged {
     converged(scene, Kernel::Physical, Extent::FULL).unwrap()
 }
 

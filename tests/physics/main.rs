@@ -24,6 +24,7 @@ mod shining;
 mod studies;
 mod tails;
 mod verdict;
+mod verdict_past;
 
 use std::ops::Range;
 

@@ -26,7 +26,7 @@ pub struct Calibrated {
     /// By those of blocks of pixels.
     pub by_blocks: Option<f64>,
     /// How far a finer rule of integration would move it: a part of the error where light is
-    /// integrated, told where it is taken by centres; absent where something stands in the way.
+    /// integrated, told where it is taken by centres.
     pub by_rule: Option<f64>,
     /// What the photographs tell of it at the start.
     pub identified: Identified,
@@ -52,12 +52,18 @@ pub struct Calibration {
     pub scene_hash: String,
     /// Geometric parameters, then gains.
     pub found: Vec<Calibrated>,
+    /// Whether light is integrated: then what a finer rule moves is counted in the errors.
+    pub is_integrated: bool,
     /// Combinations that the photographs alone do not tell.
     pub untold: Vec<Direction>,
     /// Estimated noise over the stated one (1 where it is stated), or W.
     pub noise: f64,
     /// χ² over degrees of freedom at that noise.
     pub misfit: f64,
+    /// The same by a finer rule of integration, the unknowns moved as that asks.
+    pub finer_misfit: Option<f64>,
+    /// Probability of as large a one by noise alone; absent where the noise is not known.
+    pub finer_p: Option<f64>,
     /// Degrees of freedom.
     pub dof: f64,
     /// Probability of so bad a fit by noise alone; absent where the noise is not stated.

@@ -16,6 +16,7 @@ use super::posterior::{Seen, Slope, Value};
 use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
+use crate::model::Fineness;
 use crate::num::linalg::Cholesky;
 use crate::transport::Control;
 
@@ -255,19 +256,21 @@ impl<'a> Problem<'a> {
         Ok((state, MOST_STEPS))
     }
 
-    /// How far a finer rule of integration moves the unknowns, by one Newton step; none where there
-    /// is no finer one.
+    /// How far a finer rule of integration moves the unknowns, by one Newton step, and χ² there;
+    /// none where there is no finer one. Errors are `covariance`, the inverse of `information`.
     pub(super) fn finer(
         &self,
         best: &State,
-        covariance: &Matrix,
-    ) -> Result<Option<DVector<f64>>, LabError> {
-        let Some(fineness) = self.geometry.fineness.next() else {
+        [information, covariance]: [&Matrix; 2],
+    ) -> Result<Option<(DVector<f64>, f64)>, LabError> {
+        let next = if self.geometry.is_obstructed() {
+            Some(Fineness::Finer)
+        } else {
+            self.geometry.fineness.next()
+        };
+        let Some(fineness) = next else {
             return Ok(None);
         };
-        if self.geometry.is_obstructed() {
-            return Ok(None);
-        }
         let finer = Problem {
             geometry: Geometry {
                 fineness,
@@ -278,7 +281,9 @@ impl<'a> Problem<'a> {
         };
         let state = finer.state(&best.values, best.factor, Some(&best.prior))?;
         let slopes = self.whole_slope(best) - self.whole_slope(&state);
-        Ok(Some(covariance * slopes))
+        let moved = covariance * slopes;
+        let less = moved.dot(&(information * &moved));
+        Ok(Some((moved, (state.value.chi2 - less).max(0.0))))
     }
 
     /// Slope of the cost with the prior of the unknowns.

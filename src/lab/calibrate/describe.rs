@@ -31,7 +31,20 @@ fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 impl Calibration {
     /// Whether the search ended, and the photographs do not refute what it found.
     pub fn is_found(&self) -> bool {
-        self.is_settled && self.p.is_none_or(|p| p >= SIGNIFICANCE)
+        self.is_settled && !self.is_refuted()
+    }
+
+    /// Whether the photographs do not fit what was found, and it is not for the integration.
+    fn is_refuted(&self) -> bool {
+        self.p.is_some_and(|p| p < SIGNIFICANCE) && !self.is_coarse()
+    }
+
+    /// Whether a misfit may be that of the integration: a finer rule fits, or it moves what was
+    /// found by more than noise does.
+    fn is_coarse(&self) -> bool {
+        let moves = |f: &Calibrated| f.by_rule.is_some_and(|moved| moved > f.by_curvature);
+        let fits = self.finer_p.is_some_and(|p| p >= SIGNIFICANCE);
+        self.is_more_than_noise() && self.is_integrated && (fits || self.geometry().any(moves))
     }
 
     /// Whether more than noise may be left.
@@ -66,7 +79,7 @@ impl Calibration {
             " The search did not end: do not use it."
         };
         let found = format!("rom what the scene says: {}.{ended}", listed(&few));
-        match self.p.filter(|p| *p < SIGNIFICANCE) {
+        match self.p.filter(|_| self.is_refuted()) {
             // Without a stated noise a misfit of the model is not told from it.
             None if self.field.is_some() => format!(
                 "If what is left over is noise and errors that neighbouring pixels share, f{found}"
@@ -117,6 +130,13 @@ impl Calibration {
                 "With it the photographs fit: χ²/dof {} (p = {}). The errors are those of the noise.",
                 figure(self.misfit, 3),
                 figure(p, 2)
+            ),
+            Some(_) if self.is_coarse() => format!(
+                "Light is not integrated as finely as these photographs ask for, so that whether they \
+                 fit is not told: χ²/dof is {}, and {} by a finer rule. What that moves is counted in \
+                 the errors, and so is what single frames and blocks of pixels say.",
+                figure(self.misfit, 3),
+                perhaps(self.finer_misfit, 3)
             ),
             Some(_) => "The model lacks something, or something is wrong that is not free: the order \
                  of the spots, say. Errors are the largest of three: by the noise, by what single \
@@ -215,8 +235,13 @@ impl Calibration {
         });
         let by_rule: Vec<String> = by_rule.collect();
         if !by_rule.is_empty() {
+            let then = if self.is_integrated {
+                "that is counted in its error"
+            } else {
+                "more elements, or --integration quadrature"
+            };
             notes.push(format!(
-                "A finer rule of integration would move {}: more elements, or --integration quadrature.",
+                "A finer rule of integration would move {}: {then}.",
                 listed(&by_rule)
             ));
         }
@@ -253,10 +278,10 @@ impl Describe for Calibration {
         };
         Finding {
             title: format!("The geometry, from the photographs: {}", self.scene),
-            tone: if self.is_found() {
-                Tone::Good
-            } else {
-                Tone::Bad
+            tone: match self.is_found() {
+                true if self.is_coarse() => Tone::Plain,
+                true => Tone::Good,
+                false => Tone::Bad,
             },
             sentence: self.sentence(),
             notes: self.notes(),

@@ -55,7 +55,9 @@ impl CalibrationPlan {
         let enough_frames = problem.photographs.phi.ncols() > 2;
         let scene = problem.geometry.scene;
         let names = self.names(problem);
-        let finer = problem.finer(best, &covariance)?;
+        let finer = problem.finer(best, [&information, &covariance])?;
+        let is_integrated =
+            problem.geometry.is_obstructed() || self.integration == Integration::Quadrature;
         let mut found: Vec<Calibrated> = Vec::new();
         let mut whole = covariance.clone();
         for (k, identified) in told.into_iter().enumerate() {
@@ -67,8 +69,8 @@ impl CalibrationPlan {
             let profile = profile::profile(problem, best, &covariance, k)?;
             let by_profile = profile.as_ref().map_or(0.0, Profile::stderr);
             let others = [by_frames, by_blocks].map(|x| x.unwrap_or(0.0));
-            let by_rule = finer.as_ref().map(|moved| moved[k].abs());
-            let rule = by_rule.filter(|_| self.integration == Integration::Quadrature);
+            let by_rule = finer.as_ref().map(|(moved, _)| moved[k].abs());
+            let rule = by_rule.filter(|_| is_integrated);
             let noise = others
                 .into_iter()
                 .fold(by_curvature.max(by_profile), f64::max);
@@ -125,11 +127,16 @@ impl CalibrationPlan {
         Ok(Calibration {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
+            is_integrated,
             untold,
             noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
             field: field.as_ref().map(|f| f.errors),
             log_likelier: field.as_ref().map(|_| alone - total),
             misfit: best.value.chi2 / dof,
+            finer_misfit: finer.as_ref().map(|(_, chi2)| chi2 / dof),
+            finer_p: finer
+                .as_ref()
+                .and_then(|(_, chi2)| is_noise_known.then(|| self.by_noise(*chi2, dof))),
             dof,
             p,
             left,

@@ -6,7 +6,8 @@
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;
 use crate::model::{
-    Differential, Fineness, Kernel, MatrixModel, Occlusion, Swept, Terms, TermsRate, is_obstructed,
+    Differential, Effort, Fineness, Kernel, MatrixModel, Occlusion, Swept, Terms, TermsRate,
+    is_obstructed,
 };
 use crate::scene::{Parameter, Scene, Velocity};
 
@@ -25,6 +26,7 @@ pub(super) struct Geometry<'a> {
     pub scene: &'a Scene,
     pub parameters: &'a [Parameter],
     pub elements: Option<[usize; 2]>,
+    /// Past what stands in the way only [`Fineness::Finer`] is another one.
     pub fineness: Fineness,
     pub occlusion: Occlusion,
     /// Frames whose gain is unknown: none or all.
@@ -78,10 +80,14 @@ impl Geometry<'_> {
     }
 
     /// The light of `scene` past what stands in the way, with its rates by these velocities, as
-    /// fine as photographs of this relative noise ask for.
-    fn past(&self, scene: &Scene, velocities: &[Velocity], noise: f64) -> Result<Swept, LabError> {
-        let change = OF_NOISE * noise;
-        if let Some(swept) = Swept::new(scene, self.elements, velocities, change)? {
+    /// fine as is asked for.
+    fn past(
+        &self,
+        scene: &Scene,
+        velocities: &[Velocity],
+        effort: Effort,
+    ) -> Result<Swept, LabError> {
+        if let Some(swept) = Swept::new(scene, self.elements, velocities, effort)? {
             return Ok(swept);
         }
         // What stood in the way does no more.
@@ -107,14 +113,19 @@ impl Geometry<'_> {
         let velocity = |k| self.scene.velocity(self.parameters, own, k);
         let (terms, elements, rates) = if self.is_obstructed() {
             let velocities: Vec<Velocity> = parameters.map(velocity).collect();
-            let swept = self.past(&scene, &velocities, noise)?;
+            let effort = Effort::coarse(OF_NOISE * noise);
+            let swept = self.past(&scene, &velocities, effort)?;
             let rate = |(k, own_rate): (usize, Option<Terms>)| match own_rate {
                 Some(rate) => Ok(Rate::Swept(rate)),
-                None => self.difference(own, noise, k),
+                None => self.difference(own, effort, k),
             };
             let rates = swept.rates.into_iter().enumerate().map(rate);
             let rates = rates.collect::<Result<_, LabError>>()?;
-            (swept.terms, swept.elements, rates)
+            let terms = match self.fineness {
+                Fineness::Finer => self.past(&scene, &[], Effort::FINEST)?.terms,
+                Fineness::Centres | Fineness::Areas => swept.terms,
+            };
+            (terms, swept.elements, rates)
         } else {
             let model = Differential::new(&scene, self.elements, self.fineness)?;
             let rates = parameters.map(|k| Rate::Exact(model.rate(&velocity(k))));
@@ -129,7 +140,7 @@ impl Geometry<'_> {
     }
 
     /// The central difference by parameter `k` about the values `own`.
-    fn difference(&self, own: &[f64], noise: f64, k: usize) -> Result<Rate, LabError> {
+    fn difference(&self, own: &[f64], effort: Effort, k: usize) -> Result<Rate, LabError> {
         let p = &self.parameters[k];
         let step = if p.is_angle() || p.is_percent() {
             OF_TURN
@@ -140,7 +151,7 @@ impl Geometry<'_> {
             let mut values = own.to_vec();
             values[k] += sign * step;
             let scene = self.scene.displaced(self.parameters, &values)?;
-            Ok(self.past(&scene, &[], noise)?.terms)
+            Ok(self.past(&scene, &[], effort)?.terms)
         };
         Ok(Rate::Difference {
             more: at(1.0)?,

@@ -7,6 +7,7 @@ use super::picture::{Prior, priors};
 use super::*;
 use crate::lab::finding::Describe;
 use crate::matrix::Matrix;
+use crate::model::{Extent, converged};
 use crate::num::cosines::from_cosines;
 use crate::recovery::ErrorField;
 use crate::scene::file::SceneFile;
@@ -404,6 +405,65 @@ material = { lambertian = 0.0 }
         let off = (own.value - want) / own.stderr;
         assert!(off.abs() < 3.5 && own.stderr < 0.5 * want.abs(), "{own:?}");
     }
+}
+
+/// Wide spots past a thin rod, photographs by the quadrature of the whole scene, finer than the
+/// light of elements is taken by: the stated error knows what that leaves, and no geometry is
+/// refuted for it.
+#[test]
+#[ignore = "slow"]
+fn what_the_integration_leaves_is_in_the_errors() {
+    let text = r#"
+name = "rod"
+unit = "cm"
+max_bounces = 3
+[laser]
+power = 1.0
+wavelength = 500e-9
+position = [30.0, 8.0, 13.0]
+spot_diameter = 2.0
+[laser.spots]
+layout = "list"
+points = [[8, 2], [8, 5], [8, 8], [8, 11], [-8, 3], [-8, 6], [-8, 9], [0, 12]]
+[camera]
+position = [5.0, -10.0, 35.0]
+aperture_area = 0.1
+view = { x = [-4, 6], y = [2, 8] }
+pixels = [5, 3]
+[[surface]]
+name = "wall"
+role = "relay"
+rectangle = { corner = [-10, 0, 0], u = [20, 0, 0], v = [0, 15, 0] }
+material = { lambertian = 0.6 }
+[[surface]]
+name = "board"
+role = "hidden"
+rectangle = { corner = [-3, 5, 22], u = [0, 5, -1], v = [5, 0, 0] }
+material = { lambertian = { checkerboard = [2, 2], dark = 0.2, light = 0.9 } }
+elements = [2, 2]
+[[surface]]
+name = "rod"
+role = "occluder"
+rectangle = { corner = [2.6, 0.5, 11.0], u = [0, 13, 0], v = [0.5, 0, 0] }
+sides = "two"
+material = { lambertian = 0.0 }
+"#;
+    let scene = Scene::from_toml("rod", text).unwrap();
+    let phi = converged(&scene, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi;
+    let stderr = &phi * 2e-4;
+    let mut random = normal(3);
+    let phi = phi.zip_map(&stderr, |x, s| x + s * random()[0]);
+    let found = plan(&["rod.v"], 2).calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+    let found = found.unwrap();
+    let own = &found.found[0];
+    assert!(own.by_rule.unwrap() > own.by_curvature, "{own:?}");
+    assert!(
+        own.value.abs() < 3.0 * own.stderr && own.value.abs() > 3.0 * own.by_curvature,
+        "{own:?}"
+    );
+    assert!(found.is_found(), "{:?} {:?}", found.misfit, found.p);
 }
 
 /// χ² of errors from 8 replicates, by draws of Student's t of 7 degrees of freedom as ratios of

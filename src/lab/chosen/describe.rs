@@ -153,7 +153,7 @@ pub(in crate::lab) fn chosen_words(parameter: Parameter, rank: usize, choice: Ch
         } => {
             format!(", by the evidence (χ² {residual:.1}, {patches} patches)")
         }
-        Choice::Averaged => ", likeliest of all that are averaged".to_owned(),
+        Choice::Averaged { .. } => ", likeliest of all that are averaged".to_owned(),
         Choice::Estimated => ", estimated".to_owned(),
         Choice::Gcv {
             freedom, predicted, ..

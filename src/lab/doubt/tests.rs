@@ -159,6 +159,30 @@ fn elements_that_cannot_be_told_apart_are_told() {
     }
 }
 
+/// Noisy photographs do not say how alike elements are, good ones of elements that are not do.
+#[test]
+fn how_alike_elements_are_is_told_or_not() {
+    let mut model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+    model.albedo = (0..16)
+        .map(|j| 0.5 + 0.3 * libm::sin(f64::from(j * j)))
+        .collect();
+    for (level, untold) in [(1e-9, false), (0.1, true)] {
+        let of = Photographs::relative(&model.phi(), level, 5);
+        let found = recover_objects(
+            &model,
+            &of.phi,
+            Noise::StandardError(&of.stderr, Certainty::STATED),
+            Nuisance::default(),
+            &[Method::JointGp],
+            &Options::default(),
+            Control::none(),
+        );
+        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let told = warnings.iter().any(|w| w.contains("how alike"));
+        assert_eq!(told, untold, "{level}: {warnings:?}");
+    }
+}
+
 /// Elements about two levels, and on them: at the same noise the first are told from two
 /// reflectances and have errors that hold all the same, the second are taken for two.
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::model::MatrixModel;
+use crate::model::{Factors, MatrixModel};
 use crate::num::linalg::LinalgError;
 
 use super::frames::{Frame, TermsOf, covariance_root};
@@ -53,10 +53,10 @@ pub(super) fn frames_of(
     let elements = model.albedo.len();
     let own: Vec<usize> = (0..elements).collect();
     let terms = match &model.factors {
-        Some(f) => TermsOf {
-            camera: &f.camera,
-            laser: &f.laser,
-            element: &f.element,
+        Some(Factors { terms, .. }) => TermsOf {
+            camera: &terms.camera,
+            laser: &terms.laser,
+            element: &terms.element,
             elements,
         },
         None => TermsOf {

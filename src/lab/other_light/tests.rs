@@ -198,6 +198,7 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
     }
 
     let parameter = Parameter {
+        reach: None,
         name: "all".to_owned(),
         unit: String::new(),
         same: Vec::new(),

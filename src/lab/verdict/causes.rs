@@ -57,8 +57,13 @@ impl Score {
     /// Sizes from which deviations are seen 95 times in 100, those of the scene and the least seen
     /// of single spots.
     pub(in crate::lab) fn detectable(&self) -> String {
-        let told =
-            |d: &Deviation| format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit);
+        let told = |d: &Deviation| {
+            if d.is_within_reach(d.detectable) {
+                format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit)
+            } else {
+                format!("{} in no size that a scene can have", d.name)
+            }
+        };
         let wanted = [
             "overall scale",
             "hinge angle",
@@ -69,7 +74,7 @@ impl Score {
         let of_scene = self
             .deviations
             .iter()
-            .filter(|d| wanted.contains(&d.name.as_str()));
+            .filter(|d| wanted.contains(&d.name.as_str()) || d.name.ends_with(".normal"));
         let least_seen = self
             .spots
             .iter()

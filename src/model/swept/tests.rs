@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::Facing;
+use crate::model::Effort;
 use crate::scene::file::{RectangleTable, SceneFile, SphereTable};
 use crate::scene::{Parameter, Role};
 
@@ -19,7 +20,7 @@ fn compare(name: &str, names: &[&str], limit: f64) {
     let velocity = |k| base.velocity(&parameters, &values, k);
     let velocities: Vec<Velocity> = (0..parameters.len()).map(velocity).collect();
     let elements = Some([4, 3]);
-    let swept = Swept::new(&base, elements, &velocities, 0.0)
+    let swept = Swept::new(&base, elements, &velocities, Effort::USUAL)
         .unwrap()
         .unwrap();
     let extent = base.camera.view.u().length();
@@ -30,7 +31,7 @@ fn compare(name: &str, names: &[&str], limit: f64) {
             let mut values = values.clone();
             values[k] += step;
             let scene = base.displaced(&parameters, &values).unwrap();
-            Swept::new(&scene, elements, &[], 0.0)
+            Swept::new(&scene, elements, &[], Effort::USUAL)
                 .unwrap()
                 .unwrap()
                 .terms
@@ -88,7 +89,7 @@ fn a_hidden_surface_that_is_not_flat_has_no_rates_here() {
         let scene = Scene::new(file, None).unwrap();
         let parameters = Parameter::named(&scene, "occluders.x").unwrap();
         let velocity = scene.velocity(&parameters, &[0.0], 0);
-        let swept = Swept::new(&scene, Some([2, 2]), &[velocity], 0.5).unwrap();
+        let swept = Swept::new(&scene, Some([2, 2]), &[velocity], Effort::coarse(0.5)).unwrap();
         swept.unwrap().rates[0].is_some()
     };
     assert!(rates(&file));
@@ -130,7 +131,7 @@ fn a_hidden_mesh_in_cells_has_no_rates_here() {
         let scene = Scene::from_toml("mesh", text).unwrap();
         let parameters = Parameter::named(&scene, "occluders.x").unwrap();
         let velocity = scene.velocity(&parameters, &[0.0], 0);
-        let swept = Swept::new(&scene, Some([2, 2]), &[velocity], 0.5).unwrap();
+        let swept = Swept::new(&scene, Some([2, 2]), &[velocity], Effort::coarse(0.5)).unwrap();
         swept.unwrap().rates[0].is_some()
     };
     assert!(rates(&text));

@@ -19,7 +19,9 @@
 //! are such: ln ℓ evenly from less than the distance of neighbours to a slope over the whole
 //! surface, ln τ normal, each η of [`INDEPENDENT`] alike; one surface in fifty is of one
 //! reflectance throughout, τ = 0. The estimate is the mean of that mixture, its covariance and
-//! bands those of the mixture.
+//! bands those of the mixture. They hold over all pictures that are such, not for each length:
+//! where the photographs leave the shortest ℓ as likely as others, those of elements that nothing
+//! ties to their neighbours are too small, and by how much is said with them.
 
 mod mixture;
 
@@ -147,7 +149,9 @@ pub(super) fn with_alike(
         spread: best.variance.spread * (unit / scale.unwrap_or(1.0)),
         length: likeliest.length,
     };
-    recovered.choice = Choice::Averaged;
+    recovered.choice = Choice::Averaged {
+        if_unalike: found.if_unalike,
+    };
     recovered.log_evidence = Some(evidence);
     recovered.standard_error = Some(found.standard_error);
     recovered.covariance = found.covariance;

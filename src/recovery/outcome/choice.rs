@@ -50,7 +50,11 @@ pub enum Choice {
         patches: usize,
     },
     /// The likeliest of all that count, each by its evidence: the picture is their mean.
-    Averaged,
+    Averaged {
+        /// By how many times the standard errors, as a root mean square, would be larger were
+        /// neighbours not alike; none where the photographs speak against that.
+        if_unalike: Option<f64>,
+    },
     /// Estimated together with the reflectances.
     Estimated,
     /// Generalised cross-validation: the least predicted error.

@@ -1,10 +1,7 @@
 use super::*;
 
-/// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however
-/// large its fit is against its error.
-#[test]
-fn what_leaves_the_difference_is_no_cause() {
-    let deviation = |chi2_per_dof: f64| Deviation {
+fn deviation(chi2_per_dof: f64) -> Deviation {
+    Deviation {
         name: "hinge angle".to_owned(),
         unit: "deg".to_owned(),
         value: 6.4,
@@ -13,10 +10,17 @@ fn what_leaves_the_difference_is_no_cause() {
         z: 2e4,
         p: 0.0,
         detectable: 1e-3,
+        reach: None,
         chi2_per_dof,
         same: Vec::new(),
         spot: None,
-    };
+    }
+}
+
+/// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however
+/// large its fit is against its error.
+#[test]
+fn what_leaves_the_difference_is_no_cause() {
     let cause = |left: f64, whole: f64| {
         let likely = vec![deviation(left)];
         let score = Score {
@@ -30,4 +34,25 @@ fn what_leaves_the_difference_is_no_cause() {
         assert_eq!(!told.starts_with("no single parameter"), named, "{told}");
         assert!(told.contains("hinge angle"), "{told}");
     }
+}
+
+/// What would have to be larger than any scene has it is said to be unseen.
+#[test]
+fn what_no_scene_can_have_is_not_detected() {
+    let told = |reach: Option<f64>| {
+        let score = Score {
+            deviations: vec![Deviation {
+                reach,
+                ..deviation(1.0)
+            }],
+            ..Score::default()
+        };
+        score.detectable()
+    };
+    assert_eq!(told(Some(90.0)), "hinge angle 0.0010\u{a0}deg");
+    assert_eq!(told(None), told(Some(90.0)));
+    assert_eq!(
+        told(Some(1e-4)),
+        "hinge angle in no size that a scene can have"
+    );
 }

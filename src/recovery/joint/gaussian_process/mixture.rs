@@ -11,6 +11,40 @@ use crate::recovery::{BandKind, Bands, RecoveryError, bands};
 /// Elements up to which the covariance matrix is made.
 const MOST_COVARIANCE: usize = 2048;
 
+/// The least probability of the shortest length at which the photographs do not speak against it:
+/// it is then within the middle 95 % of lengths.
+const NOT_EXCLUDED: f64 = 0.025;
+
+/// The first two moments of some triples' pictures, by their weights.
+struct Moments {
+    weight: f64,
+    mean: DVector<f64>,
+    square: DVector<f64>,
+}
+
+impl Moments {
+    fn zero(n: usize) -> Self {
+        Self {
+            weight: 0.0,
+            mean: DVector::zeros(n),
+            square: DVector::zeros(n),
+        }
+    }
+
+    fn add(&mut self, weight: f64, mean: &DVector<f64>, variance: &DVector<f64>) {
+        let square = mean.component_mul(mean) + variance;
+        self.weight += weight;
+        self.mean.axpy(weight, mean, 1.0);
+        self.square.axpy(weight, &square, 1.0);
+    }
+
+    /// The variance of each element where these are all there are.
+    fn variance(&self) -> DVector<f64> {
+        let mean = &self.mean / self.weight;
+        &self.square / self.weight - mean.component_mul(&mean)
+    }
+}
+
 /// The mixture of all triples.
 pub(super) struct Mixture {
     pub(super) mean: DVector<f64>,
@@ -18,6 +52,8 @@ pub(super) struct Mixture {
     pub(super) covariance: Option<DMatrix<f64>>,
     pub(super) bands: Option<Bands>,
     pub(super) freedom: f64,
+    /// As of [`Choice::Averaged`](crate::recovery::Choice::Averaged).
+    pub(super) if_unalike: Option<f64>,
 }
 
 impl Mixture {
@@ -72,7 +108,7 @@ impl Seen {
         let n = self.v.ncols();
         let left = self.left();
         let level = self.v.column_sum();
-        let (mut mean, mut square) = (DVector::zeros(n), DVector::zeros(n));
+        let (mut all, mut unalike) = (Moments::zero(n), Moments::zero(n));
         let mut covariance = (n <= MOST_COVARIANCE).then(|| DMatrix::zeros(n, n));
         let mut parts: Vec<(f64, DVector<f64>, DVector<f64>)> = Vec::new();
         let mut freedom = 0.0;
@@ -98,12 +134,10 @@ impl Seen {
             let errors = factor.forward(self.errors.clone());
             let unseen = factor.forward(errors.transpose()).trace();
             freedom += triple.weight * (self.y.len() as f64 - unseen);
-            mean.axpy(triple.weight, &found, 1.0);
-            square.axpy(
-                triple.weight,
-                &(found.component_mul(&found) + &variance),
-                1.0,
-            );
+            all.add(triple.weight, &found, &variance);
+            if triple.length == 0 && triple.variance.spread > 0.0 {
+                unalike.add(triple.weight, &found, &variance);
+            }
             if let Some(covariance) = &mut covariance {
                 if alike.as_ref().is_none_or(|(of, _)| *of != triple.length) {
                     alike = Some((triple.length, prior.matrix(of.length)));
@@ -124,21 +158,24 @@ impl Seen {
             parts.push((triple.weight, found, variance));
         }
         if let Some(covariance) = &mut covariance {
-            covariance.ger(-1.0, &mean, &mean, 1.0);
+            covariance.ger(-1.0, &all.mean, &all.mean, 1.0);
             *covariance *= self.unit * self.unit;
         }
-        let variance = square - mean.component_mul(&mean);
+        let variance = all.variance();
+        let if_unalike = (unalike.weight > NOT_EXCLUDED)
+            .then(|| (unalike.variance().mean() / variance.mean()).sqrt());
         let bands = confidence.map(|confidence| Bands {
             confidence,
             intervals: (0..n).map(|j| interval(&parts, j, confidence)).collect(),
             kind: BandKind::Posterior,
         });
         Ok(Mixture {
-            mean: mean * self.unit,
+            mean: all.mean * self.unit,
             standard_error: variance.map(|x| x.max(0.0).sqrt()) * self.unit,
             covariance,
             bands,
             freedom,
+            if_unalike,
         })
     }
 }
