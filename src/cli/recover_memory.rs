@@ -217,6 +217,7 @@ impl Strips<'_> {
             best: None,
             determined: None,
             errors: Some(self.certainty.errors),
+            replicates: self.certainty.replicates,
         })
     }
 

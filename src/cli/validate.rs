@@ -41,6 +41,9 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
         occlusion: args.occlusion.occlusion(),
     };
     let found = validate(&scene, measured, against, given.test)?;
+    output::result(args.json, &found.agreement, || {
+        report::finding_text(&found.agreement.describe())
+    })?;
     if let (Some((dir, record)), Outcome::Disagreed) = (&given.run, outcome(&found.agreement)) {
         write_map(dir, &scene, record, &found.z)?;
         console.say(format!(
@@ -48,9 +51,6 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
             dir.join(VALIDATION).join("p.exr").display()
         ));
     }
-    output::result(args.json, &found.agreement, || {
-        report::finding_text(&found.agreement.describe())
-    })?;
     Ok(outcome(&found.agreement))
 }
 

@@ -92,7 +92,7 @@ impl RunResults {
         let score = self.agreement.as_ref().and_then(|a| a.score.as_ref());
         if let (Some(agreement), Some(score)) = (&self.agreement, score) {
             if !agreement.agrees {
-                sentence += &format!(". Most likely: {}", score.cause(agreement.chi2_per_dof));
+                sentence += &format!(". Most likely: {}", agreement.cause(score));
             }
             sentence += &format!(
                 ". It could have missed deviations smaller than these, which it finds 95 times in 100: {}",

@@ -1,12 +1,13 @@
 //! What may be off in a scene, and what each deviation does to the model: derivatives by central
-//! differences of the quadrature; of flat figures that stand in the way in closed form.
+//! differences of the quadrature; past flat figures in closed form.
 
 use super::misplaced::{ALL, Misplaced, Size};
 use super::score::Parameter;
+use super::shaded::{Shaded, albedo_of};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
-use crate::model::{Effort, Kernel, MatrixModel, ModelError, Nodes, Occlusion, Swept, integrated};
-use crate::scene::{self, Scene};
+use crate::model::{Kernel, Nodes, integrated};
+use crate::scene::Scene;
 
 /// The scale of all light, the albedos, and everything that the tolerance study misplaces.
 pub(super) struct SceneDerivatives<'a> {
@@ -18,8 +19,7 @@ pub(super) struct SceneDerivatives<'a> {
     visible: Option<&'a Matrix>,
     step: f64,
     kinds: Vec<Kind>,
-    /// ∂Φ by shifts of what stands in the way.
-    obstacles: Vec<Matrix>,
+    shaded: Shaded,
     /// By index as for [`Self::of`].
     pub(super) parameters: Vec<Parameter>,
 }
@@ -32,8 +32,8 @@ enum Kind {
     /// The albedo of a surface.
     Albedo(usize),
     Misplaced(&'static Misplaced),
-    /// A shift of what stands in the way, by its index.
-    Obstacle(usize),
+    /// A shift of what stands in the way.
+    Shift,
 }
 
 /// Relative change of an albedo, or of the view's size, percent.
@@ -47,8 +47,9 @@ const PARALLEL: f64 = 1e-6;
 
 impl<'a> SceneDerivatives<'a> {
     /// Those of the model of `scene`, which is `phi`; albedos that act on every entry alike are
-    /// counted to the scale. `visible` is the share of each entry that is not hidden; derivatives
-    /// then are those of the model without occlusion times this share.
+    /// counted to the scale. `visible` is the share of each entry that is not hidden: derivatives
+    /// then are [`Shaded`]; where that knows none, those of the model without occlusion times this
+    /// share, as if shadows stayed where they are.
     pub(super) fn new(
         scene: &'a Scene,
         kernel: Kernel,
@@ -76,14 +77,17 @@ impl<'a> SceneDerivatives<'a> {
             visible,
             step: step(scene),
             kinds: vec![Kind::Scale],
-            obstacles: Vec::new(),
+            shaded: match (visible, kernel) {
+                (Some(_), Kernel::Physical) => Shaded::new(scene).unwrap_or_default(),
+                _ => Shaded::default(),
+            },
             parameters: vec![scale],
         };
         let reflecting = scene.relays().chain(scene.hidden());
         for (index, surface) in reflecting.filter(|(_, s)| s.is_lambertian()) {
-            let name = format!("albedo of `{}`", surface.name);
+            let name = albedo_of(&surface.name);
             let kind = Kind::Albedo(index);
-            match found.derivative(kind).and_then(|d| factor(&d, phi)) {
+            match found.by(kind, &name).and_then(|d| factor(&d, phi)) {
                 Some(factor) => found.parameters[0].same.push((name, 1.0 / factor)),
                 None => found.add(kind, name, "%", None),
             }
@@ -93,12 +97,8 @@ impl<'a> SceneDerivatives<'a> {
             let unit = what.size.unit(scene);
             found.add(Kind::Misplaced(what), what.name.to_owned(), unit, each);
         }
-        if visible.is_some() && kernel == Kernel::Physical {
-            let of = shifts(scene).unwrap_or_default();
-            for (index, (shift, rate)) in of.into_iter().enumerate() {
-                found.obstacles.push(rate);
-                found.add(Kind::Obstacle(index), shift.name, &shift.unit, None);
-            }
+        for shift in found.shaded.shifts.clone() {
+            found.add(Kind::Shift, shift.name, &shift.unit, None);
         }
         found
     }
@@ -122,14 +122,26 @@ impl<'a> SceneDerivatives<'a> {
 
     /// ∂Φ/∂θ, W per unit.
     pub(super) fn of(&self, index: usize) -> Option<Matrix> {
-        self.derivative(self.kinds[index])
+        self.by(self.kinds[index], &self.parameters[index].name)
     }
 
-    fn derivative(&self, kind: Kind) -> Option<Matrix> {
+    /// Whether shadows are taken to stay where they are.
+    pub(super) fn are_shadows_still(&self) -> bool {
+        self.visible.is_some() && !self.shaded.is_known()
+    }
+
+    fn by(&self, kind: Kind, name: &str) -> Option<Matrix> {
+        match self.shaded.rates.get(name) {
+            Some(rate) => Some(rate.clone()),
+            None => self.difference(kind),
+        }
+    }
+
+    fn difference(&self, kind: Kind) -> Option<Matrix> {
         let model = |scene: Scene| integrated(&scene, self.kernel, self.nodes).ok();
         let free = match kind {
             Kind::Scale => return Some(self.phi * 0.01),
-            Kind::Obstacle(index) => return Some(self.obstacles[index].clone()),
+            Kind::Shift => return None,
             Kind::Albedo(index) => {
                 let at = |sign: f64| {
                     model(
@@ -139,13 +151,15 @@ impl<'a> SceneDerivatives<'a> {
                 };
                 (at(1.0)? - at(-1.0)?) / (2.0 * PERCENT)
             }
+            // What it does to shadows is not known.
+            Kind::Misplaced(_) if self.shaded.is_known() => return None,
             Kind::Misplaced(what) => {
                 let step = match what.size {
                     Size::Percent => PERCENT,
                     Size::Angle => (self.step / lever(self.scene)).to_degrees(),
                     Size::Length | Size::Random | Size::Positive => self.step,
                 };
-                let at = |size: f64| model((what.apply)(self.scene, size)?);
+                let at = |size: f64| model(what.apply(self.scene, size)?);
                 let here = || integrated(self.scene, self.kernel, self.nodes).ok();
                 match (what.size, at(step), at(-step)) {
                     (Size::Positive, Some(one), _) => (at(2.0 * step)? - one) / step,
@@ -162,26 +176,6 @@ impl<'a> SceneDerivatives<'a> {
             Some(share) => free.component_mul(share),
         })
     }
-}
-
-/// Shifts of what stands in the way, and Σ_j ρ_j ∂A_j by each; not of what is not flat.
-///
-/// # Errors
-/// [`ModelError`].
-fn shifts(scene: &Scene) -> Result<Vec<(scene::Parameter, Matrix)>, ModelError> {
-    let shifts = scene::Parameter::of_occluders(scene);
-    let zero = vec![0.0; shifts.len()];
-    let velocities: Vec<_> = (0..shifts.len())
-        .map(|k| scene.velocity(&shifts, &zero, k))
-        .collect();
-    let Some(swept) = Swept::new(scene, None, &velocities, Effort::USUAL)? else {
-        return Ok(Vec::new());
-    };
-    let model = MatrixModel::with(scene, Kernel::Physical, None, Occlusion::Ignored)?;
-    let each = shifts.into_iter().zip(swept.rates);
-    Ok(each
-        .filter_map(|(shift, rate)| Some((shift, rate?.phi(&model.albedo))))
-        .collect())
 }
 
 /// How many times `phi`/100 a derivative is, if it is that.

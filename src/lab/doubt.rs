@@ -23,6 +23,9 @@ const SELDOM: f64 = 1e-6;
 /// of one direction.
 const GAP: f64 = 0.1;
 
+/// Replicates from which errors are as good as known: of 10, 95 % bands of `joint-gp` held 84 to
+/// 89 %, of 32 91 to 95 %.
+const ENOUGH_REPLICATES: u32 = 32;
 /// Standard errors larger by more than this are others.
 const LARGER: f64 = 1.1;
 /// A probability below which exactly two reflectances are not to be taken for granted.
@@ -38,6 +41,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         misfit(found, judged),
         unjudged(found, judged),
         shared(judged),
+        few_replicates(found, judged),
         overstated(judged),
         impossible(found),
         undetermined(found, judged),
@@ -92,6 +96,19 @@ fn shared(judged: &Judged) -> Option<String> {
          by --estimator independent for them; of dark frames that all spots share take more, or \
          estimate their part (--background)"
     ))
+}
+
+/// Errors of the picture that take those of the photographs for known, where they are not.
+fn few_replicates(found: &Recovered, judged: &Judged) -> Option<String> {
+    let replicates = judged.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
+    let stated = found.standard_error.is_some() || found.bands.is_some();
+    (stated && judged.shared().is_none()).then(|| {
+        format!(
+            "the standard errors of the photographs were estimated from {replicates} replicates, and those of \
+             the picture, bands and probabilities take them for known: they are TOO SMALL. Take {ENOUGH_REPLICATES} \
+             replicates or more, or state one error for all that are alike (--noise RELATIVE)"
+        )
+    })
 }
 
 /// Photographs closer to the picture than their errors let them be.

@@ -30,6 +30,7 @@ use crate::recovery::{Determined, Method, Options, Problem, Recovered, determine
 use crate::transport::Plan;
 pub use attainable::Attainable;
 use attainable::LeftOver;
+pub(super) use attainable::ROUGH;
 
 /// Elements up to which the best picture of all is looked for where no method that was asked for
 /// gives it.
@@ -165,6 +166,8 @@ pub struct Judged {
     pub determined: Option<Determined>,
     /// How the errors of the photographs hang together; none where they are not known.
     pub errors: Option<Errors>,
+    /// Replicates from which they were estimated; none where their size is known.
+    pub replicates: Option<u32>,
 }
 
 impl Judged {
@@ -194,6 +197,7 @@ impl Judged {
                 .and_then(|noise| Attainable::of(problem, noise, found, options)),
             determined: few.then(|| determined(problem).ok()).flatten(),
             errors: noise.map(|(_, certainty)| certainty.errors),
+            replicates: noise.and_then(|(_, certainty)| certainty.replicates),
         }
     }
 

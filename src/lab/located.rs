@@ -107,7 +107,7 @@ impl LocatedPlan {
         let lengths = Lengths::of(&model.places)?;
         let place = |size: f64, each_out: bool| -> Result<Option<Place>, LabError> {
             control.check()?;
-            let found = match (altered.apply)(scene, size) {
+            let found = match altered.apply(scene, size) {
                 Some(scene) => {
                     Place::new(size, &self.model(&scene)?, photographs, &lengths, each_out)?
                 }
@@ -140,7 +140,9 @@ impl LocatedPlan {
             found => found,
         };
         let order = self.order(scene, photographs, &lengths, control)?;
-        let there = (altered.apply)(scene, best.size).unwrap_or_else(|| scene.clone());
+        let there = altered
+            .apply(scene, best.size)
+            .unwrap_or_else(|| scene.clone());
         let mut curve: Vec<&Place> = coarse.iter().chain(&fine).collect();
         curve.sort_by(|a, b| a.size.total_cmp(&b.size));
         let likelihood = |p: &&Place| Likelihood {

@@ -5,7 +5,7 @@ use glam::{DAffine3, DQuat};
 use crate::geometry::{DVec3, Shape};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::num::warp;
-use crate::scene::Scene;
+use crate::scene::{Scene, Twist, Velocity};
 
 /// What a size is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +33,29 @@ impl Size {
     }
 }
 
+/// How something is misplaced by a size: lengths along unit vectors, degrees, percent.
+#[derive(Clone, Copy, Debug)]
+enum Motion {
+    /// The hidden surfaces turn around an axis: a point of it and its direction.
+    Turn(fn(&Scene) -> Option<[DVec3; 2]>),
+    /// The hidden surfaces move along this.
+    Shift(fn(&Scene) -> Option<DVec3>),
+    /// All spots move along x and y by so much of the size.
+    Spots([f64; 2]),
+    /// Every spot by itself, by the size in the root mean square.
+    EachSpot,
+    /// The view moves along x and y by so much of the size.
+    View([f64; 2]),
+    /// The view grows about its middle.
+    ViewScale,
+    /// The camera moves along this,
+    Camera(fn(&Scene) -> DVec3),
+    /// and the laser with it.
+    Devices(fn(&Scene) -> DVec3),
+    /// The walls, flat and looking upwards, bend.
+    Bend,
+}
+
 /// Something that is assumed wrongly.
 #[derive(Debug)]
 pub(super) struct Misplaced {
@@ -41,111 +64,149 @@ pub(super) struct Misplaced {
     pub(super) size: Size,
     /// Its name for one spot, where every spot has its own.
     pub(super) each_spot: Option<&'static str>,
-    /// The scene with this misplaced by a size; `None` where the scene does not allow it.
-    pub(super) apply: fn(&Scene, f64) -> Option<Scene>,
+    motion: Motion,
 }
 
-const fn sized(
-    name: &'static str,
-    size: Size,
-    apply: fn(&Scene, f64) -> Option<Scene>,
-) -> Misplaced {
+const fn sized(name: &'static str, size: Size, motion: Motion) -> Misplaced {
     Misplaced {
         name,
         size,
         each_spot: None,
-        apply,
+        motion,
     }
 }
 
-const fn length(name: &'static str, apply: fn(&Scene, f64) -> Option<Scene>) -> Misplaced {
-    sized(name, Size::Length, apply)
+const fn length(name: &'static str, motion: Motion) -> Misplaced {
+    sized(name, Size::Length, motion)
 }
 
 /// Everything that is tried.
 pub(super) const ALL: [Misplaced; 15] = [
-    sized("hinge angle", Size::Angle, turned),
-    sized("yaw of S2", Size::Angle, yawed),
-    length("S2 along its normal", |scene, size| {
-        moved(scene, first_hidden(scene)?.at([0.5; 2]).normal * size)
-    }),
-    length("S2 along u", |scene, size| {
-        moved(scene, side(scene, [[0.0, 0.5], [1.0, 0.5]])? * size)
-    }),
-    length("S2 along v", |scene, size| {
-        moved(scene, side(scene, [[0.5, 0.0], [0.5, 1.0]])? * size)
-    }),
+    sized("hinge angle", Size::Angle, Motion::Turn(hinge)),
+    sized("yaw of S2", Size::Angle, Motion::Turn(yaw_axis)),
+    length(
+        "S2 along its normal",
+        Motion::Shift(|scene| Some(first_hidden(scene)?.at([0.5; 2]).normal)),
+    ),
+    length("S2 along u", Motion::Shift(along_u)),
+    length(
+        "S2 along v",
+        Motion::Shift(|scene| side(scene, [[0.5, 0.0], [0.5, 1.0]])),
+    ),
     Misplaced {
         each_spot: Some("one spot alone, x"),
-        ..length("all spots, x", |scene, size| {
-            scene.with_shifted_spots([size, 0.0]).ok()
-        })
+        ..length("all spots, x", Motion::Spots([1.0, 0.0]))
     },
     Misplaced {
         each_spot: Some("one spot alone, y"),
-        ..length("all spots, y", |scene, size| {
-            scene.with_shifted_spots([0.0, size]).ok()
-        })
+        ..length("all spots, y", Motion::Spots([0.0, 1.0]))
     },
-    sized("each spot, random (rms)", Size::Random, scattered),
-    length("view, x", |scene, size| {
-        Some(scene.with_shifted_view([size, 0.0]))
-    }),
-    length("view, y", |scene, size| {
-        Some(scene.with_shifted_view([0.0, size]))
-    }),
-    length("camera and laser, off the wall", |scene, size| {
-        let by = scene.camera.view.normal() * size;
-        let mut moved = scene.with_moved_camera(by);
-        moved.laser.position += by;
-        Some(moved)
-    }),
-    length("camera, along its sight", |scene, size| {
-        Some(scene.with_moved_camera(sight(scene) * size))
-    }),
-    length("camera, across its sight", |scene, size| {
-        let across = sight(scene).cross(scene.camera.view.normal());
-        Some(scene.with_moved_camera(across.normalize_or_zero() * size))
-    }),
-    sized("wall bent (sagitta)", Size::Positive, bent),
-    sized("scale of the view", Size::Percent, |scene, size| {
-        Some(scene.with_scaled_view(1.0 + 0.01 * size))
-    }),
+    sized("each spot, random (rms)", Size::Random, Motion::EachSpot),
+    length("view, x", Motion::View([1.0, 0.0])),
+    length("view, y", Motion::View([0.0, 1.0])),
+    length(
+        "camera and laser, off the wall",
+        Motion::Devices(|scene| scene.camera.view.normal()),
+    ),
+    length("camera, along its sight", Motion::Camera(sight)),
+    length(
+        "camera, across its sight",
+        Motion::Camera(|scene| {
+            let across = sight(scene).cross(scene.camera.view.normal());
+            across.normalize_or_zero()
+        }),
+    ),
+    sized("wall bent (sagitta)", Size::Positive, Motion::Bend),
+    sized("scale of the view", Size::Percent, Motion::ViewScale),
 ];
+
+impl Misplaced {
+    /// The scene with this misplaced by a size; `None` where the scene does not allow it.
+    pub(super) fn apply(&self, scene: &Scene, size: f64) -> Option<Scene> {
+        let moved = |motion: DAffine3| scene.with_moved_hidden(&motion).ok();
+        match self.motion {
+            Motion::Turn(about) => {
+                let [point, axis] = about(scene)?;
+                let turn = DQuat::from_axis_angle(axis, size.to_radians());
+                moved(
+                    DAffine3::from_translation(point)
+                        * DAffine3::from_quat(turn)
+                        * DAffine3::from_translation(-point),
+                )
+            }
+            Motion::Shift(along) => moved(DAffine3::from_translation(along(scene)? * size)),
+            Motion::Spots(by) => scene.with_shifted_spots(by.map(|x| x * size)).ok(),
+            Motion::EachSpot => scattered(scene, size),
+            Motion::View(by) => Some(scene.with_shifted_view(by.map(|x| x * size))),
+            Motion::ViewScale => Some(scene.with_scaled_view(1.0 + 0.01 * size)),
+            Motion::Camera(along) => Some(scene.with_moved_camera(along(scene) * size)),
+            Motion::Devices(along) => {
+                let by = along(scene) * size;
+                let mut moved = scene.with_moved_camera(by);
+                moved.laser.position += by;
+                Some(moved)
+            }
+            Motion::Bend => bent(scene, size),
+        }
+    }
+
+    /// How everything moves per unit of its size; none where the scene does not allow it, and of
+    /// what bends or is by chance.
+    pub(super) fn velocity(&self, scene: &Scene) -> Option<Velocity> {
+        let mut found = Velocity::still(scene);
+        match self.motion {
+            Motion::Turn(about) => {
+                let [point, axis] = about(scene)?;
+                let angular = axis * 1f64.to_radians();
+                let linear = -angular.cross(point);
+                carry_hidden(&mut found, scene, Twist { angular, linear });
+            }
+            Motion::Shift(along) => {
+                let angular = DVec3::ZERO;
+                let linear = along(scene)?;
+                carry_hidden(&mut found, scene, Twist { angular, linear });
+            }
+            Motion::Spots(by) => found.spots.fill(by),
+            Motion::View(by) => found.view = by,
+            Motion::ViewScale => found.view_growth = 0.01,
+            Motion::Camera(along) => found.camera = along(scene),
+            Motion::Devices(along) => {
+                found.camera = along(scene);
+                found.laser = found.camera;
+            }
+            Motion::EachSpot | Motion::Bend => return None,
+        }
+        Some(found)
+    }
+}
+
+fn carry_hidden(velocity: &mut Velocity, scene: &Scene, twist: Twist) {
+    for (id, _) in scene.hidden() {
+        velocity.surfaces[id] = twist;
+    }
+}
 
 fn first_hidden(scene: &Scene) -> Option<&Shape> {
     scene.hidden().next().map(|(_, surface)| &surface.shape)
 }
 
-/// The scene with its hidden surfaces moved.
-fn moved(scene: &Scene, by: DVec3) -> Option<Scene> {
-    let motion = DAffine3::from_translation(by);
-    scene.with_moved_hidden(&motion).ok()
+fn hinge(scene: &Scene) -> Option<[DVec3; 2]> {
+    scene.hinge().map(|(point, axis)| [point, axis])
 }
 
-/// The scene with its hidden surfaces turned around the hinge, by degrees.
-fn turned(scene: &Scene, size: f64) -> Option<Scene> {
-    let (point, axis) = scene.hinge()?;
-    rotated(scene, point, axis, size)
-}
-
-/// The scene with its hidden surfaces turned, by degrees, around the axis through the middle of the
-/// first that lies in its plane at right angles to the hinge (to u, where there is no hinge).
-fn yawed(scene: &Scene, size: f64) -> Option<Scene> {
+/// The axis through the middle of the first hidden surface that lies in its plane at right angles
+/// to the hinge (to u, where there is no hinge).
+fn yaw_axis(scene: &Scene) -> Option<[DVec3; 2]> {
     let middle = first_hidden(scene)?.at([0.5; 2]);
     let along = match scene.hinge() {
         Some((_, axis)) => axis,
-        None => side(scene, [[0.0, 0.5], [1.0, 0.5]])?,
+        None => along_u(scene)?,
     };
-    let axis = middle.normal.cross(along).try_normalize()?;
-    rotated(scene, middle.position, axis, size)
+    Some([middle.position, middle.normal.cross(along).try_normalize()?])
 }
 
-fn rotated(scene: &Scene, point: DVec3, axis: DVec3, degrees: f64) -> Option<Scene> {
-    let motion = DAffine3::from_translation(point)
-        * DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
-        * DAffine3::from_translation(-point);
-    scene.with_moved_hidden(&motion).ok()
+fn along_u(scene: &Scene) -> Option<DVec3> {
+    side(scene, [[0.0, 0.5], [1.0, 0.5]])
 }
 
 /// The direction from one point of the first hidden surface to another.

@@ -199,6 +199,7 @@ mod results;
 pub(crate) mod sample;
 mod score;
 mod sensitivity;
+mod shaded;
 mod smooth;
 mod spots;
 mod study;

@@ -94,6 +94,10 @@ pub struct Score {
     pub likely: Vec<Deviation>,
     /// Parameters that change nothing or that the scene does not allow.
     pub untested: Vec<String>,
+    /// Whether all were fitted as if shadows stayed where they are: those of spheres, meshes and on
+    /// curved surfaces are not followed.
+    #[serde(default)]
+    pub shadows_stay: bool,
 }
 
 impl Score {

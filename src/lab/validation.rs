@@ -15,6 +15,9 @@ use super::other_light::Left;
 use super::score::Derivatives;
 use super::unmodelled::unmodelled;
 
+/// Replicates from which errors are known well enough for deviations of the scene to be fitted.
+const FEWEST: u32 = 6;
+
 /// How the model integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integration {
@@ -182,15 +185,20 @@ pub fn validate(
         parameters: &off.parameters,
         of: &|index| off.of(index),
     };
+    // Below, a variance has no variance itself, and no fit a known error.
+    let derivatives = (test.replicates >= FEWEST).then_some(&derivatives);
     let (mut agreement, z) = if beside.estimates() {
-        beside_other_light(evidence, test, &beside, &derivatives)?
+        beside_other_light(evidence, test, &beside, derivatives)?
     } else {
-        agree(evidence, test, Some(&derivatives))
+        agree(evidence, test, derivatives)
     };
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
-    agreement.occlusion = visible.map(|v| v.points);
+    agreement.occlusion = visible.as_ref().map(|v| v.points);
     agreement.unmodelled = unmodelled(scene);
+    if let Some(score) = &mut agreement.score {
+        score.shadows_stay = off.are_shadows_still();
+    }
     if occlusion == Occlusion::Ignored && is_obstructed(scene) {
         let told = "what stands in the way (`--no-occlusion` leaves it out)";
         agreement.unmodelled.push(told.to_owned());
@@ -208,7 +216,7 @@ fn beside_other_light(
     evidence: Evidence<'_>,
     test: Test,
     beside: &Nuisance<'_>,
-    derivatives: &Derivatives<'_>,
+    derivatives: Option<&Derivatives<'_>>,
 ) -> Result<(Agreement, Matrix), ValidationError> {
     // An entry without a known error has no weight in a fit.
     let counts = |at: usize| evidence.counts(at) && evidence.stderr[at] > 0.0;
@@ -240,7 +248,7 @@ fn beside_other_light(
         eliminated: Some(&eliminated),
         ..evidence
     };
-    let (mut agreement, z) = agree(left, test, Some(derivatives));
+    let (mut agreement, z) = agree(left, test, derivatives);
     agreement.other_light = other;
     agreement.gains = gains.as_ref().map(Gains::of);
     if let Some([s, stderr, _]) = scale {

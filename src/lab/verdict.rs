@@ -138,6 +138,12 @@ impl Agreement {
         format!("{} (at {} each)", failed.join(", "), figure(share, 2))
     }
 
+    /// The most likely cause that `score` finds.
+    pub(super) fn cause(&self, score: &Score) -> String {
+        let level = share(self.significance, true);
+        score.cause(self.chi2_per_dof, self.dof, level)
+    }
+
     /// What was fitted before the test, and is not seen by it.
     fn fitted_first(&self) -> String {
         let of_scale = usize::from(self.is_scale_free);
@@ -166,10 +172,22 @@ impl Agreement {
     /// The most likely cause of a disagreement, and from which size deviations are seen.
     fn limits(&self) -> Vec<(&'static str, String)> {
         let Some(score) = &self.score else {
-            return Vec::new();
+            let few = "no deviation of the scene was fitted: of fewer than 6 replicates standard errors \
+                       are too rough for it";
+            let told = ("detects", few.to_owned());
+            return if self.evidence {
+                vec![told]
+            } else {
+                Vec::new()
+            };
         };
-        let cause = (!self.agrees).then(|| ("most likely", score.cause(self.chi2_per_dof)));
-        let detects = format!("95 times in 100 from: {}", score.detectable());
+        let cause = (!self.agrees).then(|| ("most likely", self.cause(score)));
+        let stay = if score.shadows_stay {
+            "; both as if shadows stayed where they are, which moves the numbers where they are deep"
+        } else {
+            ""
+        };
+        let detects = format!("95 times in 100 from: {}{stay}", score.detectable());
         cause.into_iter().chain([("detects", detects)]).collect()
     }
 

@@ -203,7 +203,7 @@ pub(super) struct Past<'a> {
     scene: &'a Scene,
     kernel: Kernel,
     /// Of each pixel.
-    footprints: Vec<Vec<WallPoint>>,
+    pub footprints: Vec<Vec<WallPoint>>,
     pub occlusion: Obstructed<'a>,
 }
 

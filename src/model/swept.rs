@@ -1,4 +1,4 @@
-//! The light of elements past what stands in the way, and how it changes as flat figures move.
+//! The light of elements past what stands in the way, and how it changes with the geometry.
 
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use super::kernel::Kernel;
 use super::matrix_model::element_grids;
 use super::obstacles::obstacles;
 use super::occlusion::Both;
-use super::sweep::{Rates, Sweep, moves_figures_alone};
+use super::sweep::{Rates, Sweep};
 use super::terms::{Terms, compressed};
 use crate::geometry::AT_ONCE;
 use crate::matrix::Matrix;
@@ -23,8 +23,8 @@ pub struct Swept {
     pub terms: Terms,
     /// Number of elements.
     pub elements: usize,
-    /// ∂A_j by each parameter, as products too; none where it moves more than flat figures that
-    /// stand in the way, or a wall, an obstacle or a hidden surface is not flat.
+    /// ∂A_j by each parameter, as products too; none where a wall, an obstacle or a hidden surface
+    /// is not flat, or no wall lies below the middle of the view.
     pub rates: Vec<Option<Terms>>,
 }
 
@@ -51,10 +51,12 @@ impl Swept {
         let past = &settled.past;
         let mut cells = settled.cells.iter().flatten();
         if past.occlusion.is_flat() && cells.all(|cell| cell.corners.is_some()) {
-            let all = (0..velocities.len()).filter(|k| moves_figures_alone(scene, &velocities[*k]));
-            for lanes in all.collect::<Vec<_>>().chunks(AT_ONCE) {
+            let all: Vec<usize> = (0..velocities.len()).collect();
+            for lanes in all.chunks(AT_ONCE) {
                 let moving: Vec<&Velocity> = lanes.iter().map(|k| &velocities[*k]).collect();
-                let sweep = Sweep::new(&past.occlusion, &moving);
+                let Some(sweep) = Sweep::new(&past.occlusion, &moving) else {
+                    continue;
+                };
                 let own = settled.cells.par_iter();
                 let own = own.map(|cells| own_rates(past, cells, &sweep, lanes.len()));
                 let own: Vec<Vec<(Matrix, Matrix)>> = own.collect::<Result<_, _>>()?;
@@ -82,27 +84,36 @@ fn own_rates(
 ) -> Result<Vec<(Matrix, Matrix)>, ModelError> {
     let occlusion = &past.occlusion;
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
+    let n = cells.len();
     let ratio = past.by_rule(cells);
     let laser: Vec<Vec<Both>> = (0..spots).map(|l| occlusion.laser(l, cells)).collect();
-    // What shines is what it is wherever the figures are.
-    let still: Vec<Vec<Both>> = if occlusion.scene.laser.is_shining() {
-        Vec::new()
+    // What shines is what it is wherever all else is.
+    let terms = if occlusion.scene.laser.is_shining() {
+        n
     } else {
+        2 * n
+    };
+    let light: Vec<Vec<Both>> = if terms > n || !sweep.is_still {
         cells.iter().map(|cell| occlusion.camera(cell)).collect()
+    } else {
+        Vec::new()
+    };
+    let still = |p: usize, q: usize| light.get(q).map_or(0.0, |own| own[p][1]);
+    let of_ratio = match cells.get(cells.len() / 2) {
+        Some(middle) => sweep.by_rule(middle, &past.footprints, &ratio),
+        None => Vec::new(),
     };
     let camera: Vec<Vec<Rates>> = cells.iter().map(|cell| sweep.camera(cell)).collect();
     let laser_rates: Vec<Vec<Rates>> = (0..spots).map(|l| sweep.laser(l, cells)).collect();
-    let n = cells.len();
     let of = |lane: usize| {
-        let c = Matrix::from_fn(pixels, n + still.len(), |p, q| {
-            ratio[p]
-                * if q < n {
-                    camera[q][p][lane]
-                } else {
-                    still[q - n][p][1]
-                }
+        let c = Matrix::from_fn(pixels, terms, |p, q| {
+            if q < n {
+                ratio[p] * camera[q][p][lane] + of_ratio[p][lane] * still(p, q)
+            } else {
+                ratio[p] * still(p, q - n)
+            }
         });
-        let d = Matrix::from_fn(n + still.len(), spots, |q, l| {
+        let d = Matrix::from_fn(terms, spots, |q, l| {
             if q < n {
                 laser[l][q][1]
             } else {

@@ -19,7 +19,7 @@ const STEP: f64 = 1e-5;
 /// Velocities of a wall point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct WallRate {
-    position: DVec3,
+    pub position: DVec3,
     normal: DVec3,
     /// Of the unit vector to the device.
     device: DVec3,
@@ -30,9 +30,9 @@ pub(super) struct WallRate {
 /// Velocities of a hidden point, and ω of its surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct HiddenRate {
-    position: DVec3,
-    normal: DVec3,
-    angular: DVec3,
+    pub position: DVec3,
+    pub normal: DVec3,
+    pub angular: DVec3,
 }
 
 impl HiddenRate {
@@ -182,23 +182,31 @@ impl<'a> ViewRate<'a> {
             )
         }
     }
-}
 
-/// Of a piece of a flat wall at rest that the camera sees ([`super::wall_point::seen_piece`]),
-/// where its middle moves by `position` and its area grows by `grown`, relatively: E ∝
-/// (n·l)(n′·l)/l⁴ · area, l from the camera. An albedo that varies moves with the middle.
-pub(super) fn piece(scene: &Scene, point: &WallPoint, position: DVec3, grown: f64) -> WallRate {
-    let camera = &scene.camera;
-    let line = point.position - camera.position;
-    let d2 = line.length_squared();
-    let of = |n: DVec3| n.dot(position) / n.dot(line);
-    let length = d2.sqrt();
-    let unit = -line / length;
-    WallRate {
-        position,
-        normal: DVec3::ZERO,
-        device: (unit * unit.dot(position) - position) / length,
-        weight: grown + of(camera.view.normal()) + of(point.normal) - 4.0 * line.dot(position) / d2,
+    /// Of a piece of a flat wall that the camera sees ([`super::wall_point::seen_piece`]), where
+    /// its middle moves by `position` and its area grows by `grown`, relatively: E ∝
+    /// (n·l)(n′·l)/l⁴ · area, l from the camera. An albedo that varies moves with the middle.
+    pub(super) fn piece(&self, point: &WallPoint, position: DVec3, grown: f64) -> WallRate {
+        let camera = &self.scene.camera;
+        let line = point.position - camera.position;
+        let rate = position - self.velocity.camera;
+        let d2 = line.length_squared();
+        let of = |n: DVec3, n_rate: DVec3| (n_rate.dot(line) + n.dot(rate)) / n.dot(line);
+        let turned = point.surface.map_or(DVec3::ZERO, |id| {
+            let twist = &self.velocity.surfaces[id as usize];
+            twist.angular.cross(point.normal)
+        });
+        let length = d2.sqrt();
+        let unit = -line / length;
+        WallRate {
+            position,
+            normal: turned,
+            device: (unit * unit.dot(rate) - rate) / length,
+            weight: grown
+                + of(camera.view.normal(), self.aim.normal_rate)
+                + of(point.normal, turned)
+                - 4.0 * line.dot(rate) / d2,
+        }
     }
 }
 

@@ -147,14 +147,7 @@ impl Scene {
     /// How everything moves per unit of parameter `k`, where the parameters have these values.
     pub fn velocity(&self, parameters: &[Parameter], values: &[f64], k: usize) -> Velocity {
         let spots = &self.laser.spots;
-        let mut found = Velocity {
-            surfaces: vec![Twist::default(); self.surfaces.len()],
-            spots: vec![[0.0; 2]; spots.len()],
-            view: [0.0; 2],
-            view_growth: 0.0,
-            camera: DVec3::ZERO,
-            laser: DVec3::ZERO,
-        };
+        let mut found = Velocity::still(self);
         let unit = |axis: usize| [0, 1].map(|k| if k == axis { 1.0 } else { 0.0 });
         let layout = Layouts::new(self, parameters, values);
         let turned = || spots.iter().map(|s| layout.turned(xy(s.target.position)));

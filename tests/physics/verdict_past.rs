@@ -3,7 +3,9 @@
 use phicam::lab::{Against, Errors, Integration, Measured, Test, Validation, validate};
 use phicam::matrix::Matrix;
 use phicam::model::{Kernel, Occlusion};
-use phicam::scene::Scene;
+use phicam::num::statistics::binomial_interval;
+use phicam::num::stream::{Key, Sampling, Stream};
+use phicam::scene::{Parameter, Scene};
 
 use crate::builtin;
 use crate::divided::{by_quadrature, scene};
@@ -70,6 +72,80 @@ fn a_plate_that_is_elsewhere_is_named() {
         }
         assert!(found >= 9, "{name} by {size}: {found} of 10");
     }
+}
+
+/// What moves everything else past the plate, whose shadow then moves too: the same of view, hidden
+/// surface and spots, and the fit has their sign and size.
+#[test]
+fn what_moves_past_a_plate_is_named() {
+    let thought = with_plate_at([0.0; 3]);
+    let phi = by_quadrature(&thought).phi;
+    let right = judged(&thought, &phi, 1, Occlusion::Considered);
+    assert!(!score(&right).shadows_stay);
+    let of = [
+        ("view, x", "view.x"),
+        ("view, y", "view.y"),
+        ("S2 along its normal", "hidden.normal"),
+        ("yaw of S2", "hidden.yaw"),
+        ("all spots, x", "spots.x"),
+        ("all spots, y", "spots.y"),
+    ];
+    for (name, parameter) in of {
+        let parameters = Parameter::named(&thought, parameter).unwrap();
+        let all = &score(&right).deviations;
+        let size = 2.0 * all.iter().find(|d| d.name == name).unwrap().detectable;
+        let there = thought.displaced(&parameters, &[size]).unwrap();
+        let there = by_quadrature(&there).phi;
+        let mut found = 0;
+        for seed in 1..=10 {
+            let own = judged(&thought, &there, seed, Occlusion::Considered);
+            let named = score(&own).likely.iter().any(|d| d.name == name);
+            let all = &score(&own).deviations;
+            let fit = all.iter().find(|d| d.name == name).unwrap();
+            let within = (fit.value - size).abs() <= 3.0 * fit.stderr;
+            found += u32::from(named && within && !own.agreement.agrees);
+        }
+        assert!(found >= 9, "{name} by {size}: {found} of 10");
+    }
+}
+
+/// Of two replicates no deviation is fitted: right light is rejected no oftener than at 1 in 1000.
+#[test]
+fn two_replicates_tell_no_deviation() {
+    let scene = crate::verdict::small();
+    let phi = crate::verdict::right();
+    let test = Test {
+        significance: 1e-3,
+        replicates: 2,
+        errors: Errors::Independent,
+    };
+    let against = Against {
+        kernel: Kernel::Physical,
+        integration: Integration::Quadrature,
+        occlusion: Occlusion::Considered,
+    };
+    let mut rejected = 0;
+    for seed in 0..200 {
+        let mut stream = Stream::new(
+            Sampling::Pcg,
+            Key {
+                seed,
+                spot: 0,
+                pixel: 0,
+                block: 0,
+            },
+        );
+        let mut draw = || phi.map(|x| x * (1.0 + 0.01 * stream.normal()));
+        let [a, b] = [draw(), draw()];
+        let mean = (&a + &b) * 0.5;
+        let stderr = (a - b).abs() * 0.5;
+        let measured = Measured::new(&mean, &stderr, None);
+        let found = validate(&scene, measured, against, test).unwrap().agreement;
+        assert!(found.score.is_none());
+        rejected += u64::from(!found.agrees);
+    }
+    let [_, most] = binomial_interval(200, 1e-3, 0.99);
+    assert!(rejected <= most, "{rejected} of 200");
 }
 
 /// Light that frames hold and no model has is told where there is any: a spot that is seen, walls

@@ -1,8 +1,8 @@
 //! Photographs that a picture, or any picture, does not explain.
 
-use crate::lab::fit::{Attainable, Fit, Judged};
+use crate::lab::fit::{Attainable, Fit, Judged, ROUGH};
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Method, Recovered};
+use crate::recovery::{Method, Recovered, Weighting};
 
 fn told(fit: &Fit) -> String {
     format!(
@@ -39,6 +39,15 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
              recover with joint to tell"
         ));
     };
+    if let Weighting::Separable { misfit } = found.weighting
+        && misfit > ROUGH
+    {
+        return Some(format!(
+            "{own}, and others explain them ({}): the errors are no product of one by pixel and one by \
+             spot, which the weights are. Use --weighting entries",
+            told(&best.possible)
+        ));
+    }
     Some(format!(
         "{own}, and others explain them ({}): the method is at fault, not the photographs. {}",
         told(&best.possible),

@@ -2,6 +2,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::*;
 use crate::lab::ensemble::Photographs;
+use crate::lab::misplaced::normal;
 use crate::lab::study::tests::small;
 use crate::lab::{Certainty, Noise, RecoveredObject, Work, recover_objects};
 use crate::matrix::Matrix;
@@ -156,6 +157,47 @@ fn elements_that_cannot_be_told_apart_are_told() {
             .iter()
             .any(|w| w.contains("do not determine 2 of 4"));
         assert_eq!(told, alike, "{warnings:?}");
+    }
+}
+
+/// Right photographs whose errors are no product of one by pixel and one by spot: no method says
+/// that nothing explains them, and one whose weights are of that form says what helps. Their errors
+/// estimated from few replicates, those of the picture are told to be too small.
+#[test]
+fn errors_of_any_form_refute_nothing() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
+    let phi = model.phi();
+    for seed in 1..4 {
+        let mut normal = normal(seed);
+        let stderr = phi.map(|x| 0.01 * x * libm::exp(1.5 * normal()[0]));
+        let noisy = phi.zip_map(&stderr, |x, s| x + s * normal()[0]);
+        let mut told = 0;
+        for (method, outcome) in by_every_method(&model, &noisy, Some(&stderr)) {
+            let Ok(object) = outcome else { continue };
+            assert!(!object.contradicted(), "{method}: {:?}", object.warnings);
+            let helps = object.warnings.iter();
+            told += usize::from(helps.filter(|w| w.contains("--weighting entries")).count() > 0);
+        }
+        assert!(told > 0, "{seed}");
+    }
+    for (replicates, few) in [(Some(5), true), (Some(32), false), (None, false)] {
+        let right = Photographs::relative(&phi, 1e-2, 5);
+        let certainty = Certainty {
+            replicates,
+            ..Certainty::STATED
+        };
+        let found = recover_objects(
+            &model,
+            &right.phi,
+            Noise::StandardError(&right.stderr, certainty),
+            Nuisance::default(),
+            &[Method::JointUnbounded],
+            &Options::default(),
+            Control::none(),
+        );
+        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let told = warnings.iter().any(|w| w.contains("replicates"));
+        assert_eq!(told, few, "{replicates:?}: {warnings:?}");
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Certainty, Fit, MOST_ELEMENTS, Residuals, fit};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::fisher_sf;
-use crate::recovery::{Method, Options, Problem, Recovered, WeightRule, recover};
+use crate::recovery::{Method, Options, Problem, Recovered, WeightRule, Weighting, recover};
 
 /// What the best picture of all can do: whether photographs and matrices belong together, whatever
 /// the method.
@@ -34,16 +34,32 @@ impl Attainable {
             weighting: WeightRule::Noise,
             ..*options
         };
-        let by = |method: Method| -> Option<Fit> {
+        let by_noise = |method: Method| -> Option<(Fit, Weighting)> {
             let known = found.iter().find(|f| f.method == method);
             if let Some(known) = known.filter(|_| weighted) {
-                return fit(problem, noise, known);
+                return Some((fit(problem, noise, known)?, known.weighting));
             }
             if problem.elements() > MOST_ELEMENTS {
                 return None;
             }
             let searched = recover(method, problem, &options).ok()?;
-            fit(problem, noise, &searched)
+            Some((fit(problem, noise, &searched)?, searched.weighting))
+        };
+        // Weights by pixel and by spot leave more over than the best picture does where errors are
+        // no product of such.
+        let by = |method: Method| -> Option<Fit> {
+            let (found, weighting) = by_noise(method)?;
+            let rough = matches!(weighting, Weighting::Separable { misfit } if misfit > ROUGH);
+            if found.fits || !rough || problem.elements() > MOST_ELEMENTS {
+                return Some(found);
+            }
+            let options = Options {
+                weighting: WeightRule::Entries,
+                ..options
+            };
+            let by_entries = recover(method, problem, &options).ok();
+            let by_entries = by_entries.and_then(|own| fit(problem, noise, &own));
+            Some(by_entries.filter(|own| own.p > found.p).unwrap_or(found))
         };
         let scale = |f: &&Recovered| f.nuisance.as_ref().and_then(|n| n.scale);
         let free = found.iter().any(|f| scale(f).is_some());
@@ -54,6 +70,10 @@ impl Attainable {
         })
     }
 }
+
+/// Root mean square of ln σ about a term by pixel and one by spot, above which weights of that form
+/// are not those of the noise; σ of 32 replicates scatters by 0.13.
+pub(in crate::lab) const ROUGH: f64 = 0.25;
 
 /// What any numbers leave over of photographs whose noise is not known: of `joint-unbounded`.
 #[derive(Clone, Copy, Debug, PartialEq)]

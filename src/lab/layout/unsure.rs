@@ -43,7 +43,7 @@ impl Unsure {
         photograph: impl Fn(&Scene) -> Result<Matrix, LabError>,
     ) -> Result<Matrix, LabError> {
         let at = |step: f64| {
-            let moved = (self.what.apply)(scene, step * self.deviation);
+            let moved = self.what.apply(scene, step * self.deviation);
             let none =
                 "this scene cannot be moved as --hinge, --offset or --aim say; leave them out";
             photograph(&moved.ok_or(LabError::Unsuited(none))?)

@@ -11,10 +11,13 @@ use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::Study;
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
-use crate::model::{Differential, Extent, Fineness, Kernel, MatrixModel, ModelError, converged};
+use crate::model::{
+    Differential, Effort, Extent, Fineness, Kernel, MatrixModel, ModelError, Swept, converged,
+    is_obstructed,
+};
 use crate::num::summation::tree_sum;
 use crate::recovery::{Method, Options, recover};
-use crate::scene::{Parameter, Scene};
+use crate::scene::Scene;
 use crate::transport::Control;
 
 /// `phicam study tolerance`.
@@ -50,6 +53,8 @@ pub(in crate::lab) const STUDY: Registered = Registered {
 
 /// Sizes from 1e-4 to 1 inch (or degree), three to a decade and a half.
 const SIZES: [f64; 9] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0];
+/// Part of a sagitta at which a wall is as good as flat.
+const NEARLY_FLAT: f64 = 1e-2;
 /// Noisy photographs whose recoveries are averaged.
 const DRAWS: u64 = 4;
 
@@ -133,11 +138,22 @@ impl Study for ToleranceTasks {
         };
         let what = &ALL[at / SIZES.len()];
         let size = SIZES[at % SIZES.len()] * unit(what, &self.scene).0;
-        let Some(wrong) = (what.apply)(&self.scene, size) else {
+        let Some(wrong) = what.apply(&self.scene, size) else {
             return Ok(Placed::Wrong(None));
         };
-        let phi = converged(&wrong, Kernel::Physical, Extent::FULL)?.phi;
-        let truth = &bench.truth;
+        let light = |scene: &Scene| -> Result<Matrix, ModelError> {
+            Ok(converged(scene, Kernel::Physical, Extent::FULL)?.phi)
+        };
+        let phi = light(&wrong)?;
+        // A wall that bends asks what stands in the way ray by ray: it is held against itself.
+        let nearly = match what.size {
+            Size::Positive if is_obstructed(&self.scene) => {
+                what.apply(&self.scene, NEARLY_FLAT * size)
+            }
+            _ => None,
+        };
+        let nearly = nearly.map(|scene| light(&scene)).transpose()?;
+        let truth = nearly.as_ref().unwrap_or(&bench.truth);
         let scale = phi.dot(truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
         Ok(Placed::Wrong(Some(Misplacement {
             size,
@@ -164,7 +180,7 @@ impl Study for ToleranceTasks {
             (!rows.is_empty()).then(|| Sensitivity {
                 name: what.name.to_owned(),
                 unit: unit(what, &self.scene).1.to_owned(),
-                by_derivative: by_derivative(&self.scene, what.name),
+                by_derivative: by_derivative(&self.scene, what),
                 needed: falls_through(right, &rows, self.wished),
                 lost_at: right.and_then(|m| falls_through(right, &rows, PATTERN * m)),
                 rows,
@@ -191,40 +207,32 @@ fn unit(what: &Misplaced, scene: &Scene) -> (f64, &'static str) {
     }
 }
 
-/// Parameters of the scene, by their names here.
-const PARAMETERS: [(&str, &str); 8] = [
-    ("hinge angle", "hinge.angle"),
-    ("yaw of S2", "hidden.yaw"),
-    ("S2 along its normal", "hidden.normal"),
-    ("all spots, x", "spots.x"),
-    ("all spots, y", "spots.y"),
-    ("view, x", "view.x"),
-    ("view, y", "view.y"),
-    ("scale of the view", "view.scale"),
-];
-
 /// ‖∂Φ‖/‖Φ‖ a unit, and what the best scale leaves of it, by the derivative of the model over areas
-/// with nothing in the way; none of what is no parameter.
-fn by_derivative(scene: &Scene, name: &str) -> Option<[f64; 2]> {
-    let (_, name) = PARAMETERS.iter().find(|(own, _)| *own == name)?;
-    let parameter = Parameter::named(scene, name).ok()?;
-    let model = Differential::new(scene, None, Fineness::Areas).ok()?;
-    let (terms, rate) = (
-        model.terms(),
-        model.rate(&scene.velocity(&parameter, &[0.0], 0)),
-    );
-    let n = model.elements();
+/// and past flat figures in the way; none of what has none.
+fn by_derivative(scene: &Scene, what: &Misplaced) -> Option<[f64; 2]> {
+    let velocity = what.velocity(scene)?;
     let divided = scene.hidden().flat_map(|(_, s)| s.divided(s.elements));
     let albedo: Vec<f64> = divided.map(|e| e.albedo).collect();
-    let rho = nalgebra::DVector::from_vec(albedo);
-    let [mut square, mut dot, mut change] = [0.0; 3];
-    for l in 0..scene.laser.spots.len() {
-        let light = terms.frame(l, n) * &rho;
-        let moved = terms.frame_rate(&rate, l, n) * &rho;
-        square += light.norm_squared();
-        dot += light.dot(&moved);
-        change += moved.norm_squared();
-    }
+    let [light, moved] = if is_obstructed(scene) {
+        let swept = Swept::new(scene, None, &[velocity], Effort::USUAL).ok()??;
+        let rate = swept.rates.into_iter().next()??;
+        [swept.terms.phi(&albedo), rate.phi(&albedo)]
+    } else {
+        let model = Differential::new(scene, None, Fineness::Areas).ok()?;
+        let (terms, rate, n) = (model.terms(), model.rate(&velocity), model.elements());
+        let rho = nalgebra::DVector::from_vec(albedo);
+        let spots = 0..scene.laser.spots.len();
+        let columns = |of: &dyn Fn(usize) -> Matrix| {
+            let each: Vec<_> = spots.clone().map(|l| of(l) * &rho).collect();
+            Matrix::from_columns(&each)
+        };
+        [
+            columns(&|l| terms.frame(l, n)),
+            columns(&|l| terms.frame_rate(&rate, l, n)),
+        ]
+    };
+    let (square, dot) = (light.norm_squared(), light.dot(&moved));
+    let change = moved.norm_squared();
     let left = (change - dot * dot / square).max(0.0);
     Some([(change / square).sqrt(), (left / square).sqrt()])
 }

@@ -3,20 +3,24 @@
 use crate::lab::finding::listed;
 use crate::lab::score::{Deviation, Score};
 use crate::num::digits::{figure, significant};
+use crate::num::statistics::chi_square_sf;
 
-/// A parameter that leaves more than this part of the excess of χ² over its mean is no cause of it.
+/// A parameter that leaves more than this part of the excess of χ² over its mean, and more than
+/// chance, is no cause of it.
 const UNEXPLAINED: f64 = 0.1;
 /// Causes that are named beside the most likely one.
 const NAMED: usize = 3;
 
 impl Score {
-    /// The most likely cause of a χ²/dof, and what explains the difference as well.
-    pub(in crate::lab) fn cause(&self, chi2_per_dof: f64) -> String {
+    /// The most likely cause of a χ²/dof of so many degrees of freedom, and what explains the
+    /// difference as well; whether it does is tested at `level`.
+    pub(in crate::lab) fn cause(&self, chi2_per_dof: f64, dof: f64, level: f64) -> String {
         let Some((first, rest)) = self.likely.split_first() else {
             return "no single parameter of the scene explains it".to_owned();
         };
         let left = first.chi2_per_dof - 1.0;
-        if left > 1.0 && left > UNEXPLAINED * (chi2_per_dof - 1.0) {
+        let explains = chi_square_sf(first.chi2_per_dof * dof, dof) >= level;
+        if !explains && left > UNEXPLAINED * (chi2_per_dof - 1.0) {
             return format!(
                 "no single parameter of the scene explains it: the best, {}, leaves χ²/dof {}. Several at \
                  once may, or another order, orientation or unit of the photographs (`phicam locate` \
@@ -29,7 +33,8 @@ impl Score {
             .same
             .iter()
             .map(|(name, factor)| {
-                format!("{name} {}", signed(first.value * factor, 3, &first.unit))
+                let percent = 100.0 * (libm::pow(1.0 + 0.01 * first.value, *factor) - 1.0);
+                format!("{name} {}", signed(percent, 3, &first.unit))
             })
             .collect();
         let same = if same.is_empty() {
@@ -47,8 +52,14 @@ impl Score {
             };
             format!("; not told from {}{more}", named.join(", "))
         };
+        let more = if explains {
+            ""
+        } else {
+            ", which is more than chance: it is not small against the scene, and its value a first \
+             step, or something else is off too"
+        };
         format!(
-            "{}{same}{as_good}; χ²/dof {} with it fitted",
+            "{}{same}{as_good}; χ²/dof {} with it fitted{more}",
             first.fitted(),
             significant(first.chi2_per_dof, 4)
         )

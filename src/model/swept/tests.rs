@@ -61,9 +61,32 @@ fn rates_are_those_of_displaced_occluders() {
     );
 }
 
-/// Of what moves more than flat figures there are none.
+/// Of what moves all else past them.
 #[test]
-fn other_parameters_have_no_rates_here() {
+fn rates_are_those_of_displaced_scenes() {
+    compare("screen", &["hidden.normal", "view.x", "camera.z"], 0.01);
+    compare(
+        "periscope",
+        &[
+            "hidden.normal",
+            "hidden.yaw",
+            "hinge.angle",
+            "spots.x",
+            "view.scale",
+            "wall.pitch",
+        ],
+        0.01,
+    );
+    compare(
+        "shelf",
+        &["hidden.yaw", "spots.y", "camera.x", "view.y"],
+        0.03,
+    );
+}
+
+/// What moves occluders alone is told, for what they do not shade is at rest then.
+#[test]
+fn what_moves_occluders_alone_is_known() {
     let base = Scene::load("screen").unwrap();
     let parameters: Vec<Parameter> = ["occluders.x", "hidden.normal", "view.x"]
         .iter()
@@ -71,7 +94,7 @@ fn other_parameters_have_no_rates_here() {
         .collect();
     let velocity = |k| base.velocity(&parameters, &[0.0; 3], k);
     let moves: Vec<bool> = (0..3)
-        .map(|k| moves_figures_alone(&base, &velocity(k)))
+        .map(|k| crate::model::sweep::moves_figures_alone(&base, &velocity(k)))
         .collect();
     assert_eq!(moves, [true, false, false]);
 }

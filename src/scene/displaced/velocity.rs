@@ -1,6 +1,7 @@
 //! How things move per unit of a parameter.
 
 use crate::geometry::DVec3;
+use crate::scene::Scene;
 
 /// The velocity of a rigid body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,4 +34,18 @@ pub struct Velocity {
     pub camera: DVec3,
     /// Of where the beams start.
     pub laser: DVec3,
+}
+
+impl Velocity {
+    /// Of a scene in which nothing moves.
+    pub fn still(scene: &Scene) -> Self {
+        Self {
+            surfaces: vec![Twist::default(); scene.surfaces.len()],
+            spots: vec![[0.0; 2]; scene.laser.spots.len()],
+            view: [0.0; 2],
+            view_growth: 0.0,
+            camera: DVec3::ZERO,
+            laser: DVec3::ZERO,
+        }
+    }
 }

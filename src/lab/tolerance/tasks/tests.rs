@@ -25,7 +25,7 @@ fn small_misplacements_act_in_proportion() {
         .phi;
     for what in ALL {
         let change = |size: f64| {
-            let wrong = (what.apply)(&scene, size).unwrap();
+            let wrong = what.apply(&scene, size).unwrap();
             let phi = converged(&wrong, Kernel::Physical, Extent::FULL)
                 .unwrap()
                 .phi;

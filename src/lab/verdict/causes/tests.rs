@@ -27,7 +27,7 @@ fn what_leaves_the_difference_is_no_cause() {
             likely,
             ..Score::default()
         };
-        score.cause(whole)
+        score.cause(whole, 1000.0, 1e-3)
     };
     for (left, whole, named) in [(3e5, 4e5, false), (1.05, 40.0, true), (90.0, 1e4, true)] {
         let told = cause(left, whole);
@@ -54,5 +54,31 @@ fn what_no_scene_can_have_is_not_detected() {
     assert_eq!(
         told(Some(1e-4)),
         "hinge angle in no size that a scene can have"
+    );
+}
+
+/// What leaves more than chance explains not all, and says so; a factor of all light is turned into
+/// the albedo that makes it, of light that meets the wall twice: (1 − 0.968)² = 0.001.
+#[test]
+fn what_explains_not_all_says_so() {
+    let told = |left: f64| {
+        let likely = vec![Deviation {
+            value: -99.9,
+            unit: "%".to_owned(),
+            same: vec![("albedo of `wall`".to_owned(), 0.5)],
+            ..deviation(left)
+        }];
+        let score = Score {
+            likely,
+            ..Score::default()
+        };
+        score.cause(40.0, 1000.0, 1e-3)
+    };
+    assert!(!told(1.02).contains("more than chance"), "{}", told(1.02));
+    assert!(told(1.3).contains("more than chance"), "{}", told(1.3));
+    assert!(
+        told(1.02).contains("albedo of `wall` −96.8"),
+        "{}",
+        told(1.02)
     );
 }
