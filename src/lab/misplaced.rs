@@ -157,15 +157,9 @@ impl Misplaced {
         match self.motion {
             Motion::Turn(about) => {
                 let [point, axis] = about(scene)?;
-                let angular = axis * 1f64.to_radians();
-                let linear = -angular.cross(point);
-                carry_hidden(&mut found, scene, Twist { angular, linear });
+                carry_hidden(&mut found, scene, Twist::about(point, axis));
             }
-            Motion::Shift(along) => {
-                let angular = DVec3::ZERO;
-                let linear = along(scene)?;
-                carry_hidden(&mut found, scene, Twist { angular, linear });
-            }
+            Motion::Shift(along) => carry_hidden(&mut found, scene, Twist::along(along(scene)?)),
             Motion::Spots(by) => found.spots.fill(by),
             Motion::View(by) => found.view = by,
             Motion::ViewScale => found.view_growth = 0.01,

@@ -3,7 +3,7 @@
 mod causes;
 
 use super::agreement::{Agreement, Entry, EntryBound, share};
-use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
+use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
 use super::gains::words;
 use super::score::{Deviation, Score};
 use super::summary::facts;
@@ -188,7 +188,10 @@ impl Agreement {
             ""
         };
         let detects = format!("95 times in 100 from: {}{stay}", score.detectable());
-        cause.into_iter().chain([("detects", detects)]).collect()
+        let untested = &score.untested;
+        let untested = (!untested.is_empty()).then(|| ("not tested", listed(untested)));
+        let detects = [("detects", detects)];
+        cause.into_iter().chain(detects).chain(untested).collect()
     }
 
     /// The entries with the largest |z|.

@@ -78,15 +78,11 @@ fn motion(of: &Motion, value: f64) -> DAffine3 {
 /// The velocity of a motion, carried along by `before`.
 fn twist(of: &Motion, before: &DAffine3) -> Twist {
     match of {
-        Motion::Along(axis) => Twist {
-            angular: DVec3::ZERO,
-            linear: before.transform_vector3(*axis),
-        },
-        Motion::About { point, axis } => {
-            let angular = before.transform_vector3(*axis) * 1f64.to_radians();
-            let linear = -angular.cross(before.transform_point3(*point));
-            Twist { angular, linear }
-        }
+        Motion::Along(axis) => Twist::along(before.transform_vector3(*axis)),
+        Motion::About { point, axis } => Twist::about(
+            before.transform_point3(*point),
+            before.transform_vector3(*axis),
+        ),
     }
 }
 

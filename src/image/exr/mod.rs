@@ -201,8 +201,7 @@ fn interleaved(
         ([Some(r), Some(g), Some(b)], _) => vec![r, g, b],
         ([None, None, None], Some(grey)) => vec![grey],
         _ => {
-            let reason =
-                "it has neither R, G and B nor Y as its channels; save it with one or the other";
+            let reason = "it has neither R, G and B nor Y as channels of floating-point numbers (integers are no light); save it with one or the other";
             return Err(unsupported(name, reason));
         }
     };

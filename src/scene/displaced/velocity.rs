@@ -13,6 +13,23 @@ pub struct Twist {
 }
 
 impl Twist {
+    /// Of a shift along a vector, of its length per unit.
+    pub fn along(linear: DVec3) -> Self {
+        Self {
+            angular: DVec3::ZERO,
+            linear,
+        }
+    }
+
+    /// Of a turn by a degree per unit about an axis, a unit vector, through a point.
+    pub fn about(point: DVec3, axis: DVec3) -> Self {
+        let angular = axis * 1f64.to_radians();
+        Self {
+            angular,
+            linear: -angular.cross(point),
+        }
+    }
+
     /// ẋ = v + ω × x.
     pub fn at(&self, x: DVec3) -> DVec3 {
         self.linear + self.angular.cross(x)
