@@ -459,6 +459,7 @@ material = { lambertian = 0.0 }
     let found = found.unwrap();
     let own = &found.found[0];
     assert!(own.by_rule.unwrap() > own.by_curvature, "{own:?}");
+    assert!(own.stderr >= own.by_rule.unwrap(), "{own:?}");
     assert!(
         own.value.abs() < 3.0 * own.stderr && own.value.abs() > 3.0 * own.by_curvature,
         "{own:?}"
