@@ -158,15 +158,7 @@ impl<'a> Sweep<'a> {
         let mut pieces = Pieces::default();
         let hidden = self.past.hidden_from(cell);
         let moves = self.moves(cell);
-        let mut found: Vec<Rates> = (0..self.past.pixels())
-            .map(|p| {
-                let mut sum = [0.0; AT_ONCE];
-                let all = 0..self.past.pixels[p].len();
-                all.for_each(|i| add(&mut sum, &self.whole_rate((p, i), (cell, &moves))));
-                sum
-            })
-            .collect();
-        // Those that no shadow may meet are not visited.
+        let mut found: Vec<Option<Rates>> = vec![None; self.past.pixels()];
         self.past.blocks.visit(&hidden, &mut |p, met| {
             let mut sum = [0.0; AT_ONCE];
             for (i, (patch, seen)) in self.past.pixels[p].iter().zip(&self.seen[p]).enumerate() {
@@ -193,9 +185,18 @@ impl<'a> Sweep<'a> {
                     add(&mut sum, &self.whole_rate((p, i), (cell, &moves)));
                 }
             }
-            found[p] = sum;
+            found[p] = Some(sum);
         });
-        found
+        // Those that no shadow may meet are not visited.
+        let whole = |p: usize| {
+            let mut sum = [0.0; AT_ONCE];
+            let all = 0..self.past.pixels[p].len();
+            all.for_each(|i| add(&mut sum, &self.whole_rate((p, i), (cell, &moves))));
+            sum
+        };
+        let each = found.into_iter().enumerate();
+        each.map(|(p, met)| met.unwrap_or_else(|| whole(p)))
+            .collect()
     }
 
     /// Of what part `i` of pixel `p` sends to a cell where nothing is in the way.

@@ -257,11 +257,11 @@ impl<'a> Problem<'a> {
     }
 
     /// How far a finer rule of integration moves the unknowns, by one Newton step, and χ² there;
-    /// none where there is no finer one. Errors are `covariance`, the inverse of `information`.
+    /// none where there is no finer one.
     pub(super) fn finer(
         &self,
         best: &State,
-        [information, covariance]: [&Matrix; 2],
+        covariance: &Matrix,
     ) -> Result<Option<(DVector<f64>, f64)>, LabError> {
         let next = if self.geometry.is_obstructed() {
             Some(Fineness::Finer)
@@ -281,8 +281,8 @@ impl<'a> Problem<'a> {
         };
         let state = finer.state(&best.values, best.factor, Some(&best.prior))?;
         let slopes = self.whole_slope(best) - self.whole_slope(&state);
-        let moved = covariance * slopes;
-        let less = moved.dot(&(information * &moved));
+        let moved = covariance * &slopes;
+        let less = moved.dot(&slopes);
         Ok(Some((moved, (state.value.chi2 - less).max(0.0))))
     }
 

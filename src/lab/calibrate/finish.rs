@@ -55,7 +55,7 @@ impl CalibrationPlan {
         let enough_frames = problem.photographs.phi.ncols() > 2;
         let scene = problem.geometry.scene;
         let names = self.names(problem);
-        let finer = problem.finer(best, [&information, &covariance])?;
+        let finer = problem.finer(best, &covariance)?;
         let is_integrated =
             problem.geometry.is_obstructed() || self.integration == Integration::Quadrature;
         let mut found: Vec<Calibrated> = Vec::new();
