@@ -91,10 +91,13 @@ pub(super) fn words(of: &Gains) -> String {
         words.push(format!(
             "common factor {}{}",
             significant(1.0 + whole.size[0], 5),
-            if of.settled {
-                format!(" ± {}", figure(whole.standard_error[0], 2))
-            } else {
-                ", not settled".to_owned()
+            match (of.settled, whole.picture_given) {
+                (true, false) => format!(" ± {}", figure(whole.standard_error[0], 2)),
+                (true, true) => format!(
+                    " (its error this method does not know; ± {} was stated)",
+                    figure(whole.known_to, 2)
+                ),
+                (false, _) => ", not settled".to_owned(),
             }
         ));
     }

@@ -12,7 +12,10 @@
 //! is H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with
 //! ε unknown. The estimates are then set to what was found and all is done again, until the factors
 //! no longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
-//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary.
+//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary; of
+//! `joint-gp`, which knows of what size x is, ε̂ is the likeliest whatever x ([`Linear`]): with x
+//! fitted the least picture, of the largest factor, would be. Its errors are then somewhat too large
+//! where N σ_s² is no longer small: 1.3 times for 36 elements and 7 %.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.
@@ -76,13 +79,18 @@ pub(in crate::recovery) fn recover(
         frames: DVector::zeros(problem.phi.ncols()),
         whole,
         noise: noise(&start),
+        directions: 0.0,
     };
+    let of_prior = method == Method::JointGp;
     let (mut steps, mut settled) = (0, false);
     while steps < MOST_STEPS && !settled {
         steps += 1;
         let linear = Linear::about(problem, &at);
-        let found = by(method, &linear.problem(&base), &quick)?;
+        let found = linear.about_one(by(method, &linear.problem(&base), &quick)?);
         let noise = noise(&found);
+        if of_prior {
+            at.directions = found.effective_rank;
+        }
         settled = (noise / at.noise - 1.0).abs() < SETTLED;
         // Where whole steps go back and forth, half of them do not.
         let share = if steps > WHOLE_STEPS { 0.5 } else { 1.0 };
@@ -92,7 +100,7 @@ pub(in crate::recovery) fn recover(
     let linear = Linear::about(problem, &at);
     let shared = Shared::default();
     let about = linear.problem(&base).sharing(&shared);
-    let mut found = by(method, &about, options)?;
+    let mut found = linear.about_one(by(method, &about, options)?);
     settled &= at.take(&found, 1.0) < SETTLED;
     let evidence = match (found.log_evidence, weighted) {
         (Some(evidence), true) => punished(evidence, &base, &about, options)?,

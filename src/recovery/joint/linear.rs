@@ -15,6 +15,9 @@ pub(super) struct Estimates {
     pub(super) whole: f64,
     /// 1 where the noise is known, else its standard deviation, W.
     pub(super) noise: f64,
+    /// ν, directions of x that are of a prior's size: with ε at its likeliest x is marginalised, not
+    /// fitted. 0 of methods whose x has no size beforehand.
+    pub(super) directions: f64,
 }
 
 impl Estimates {
@@ -38,10 +41,21 @@ impl Estimates {
 }
 
 /// The linear problem.
+///
+/// Of what the photographs say of (1 + ε) x the prior of x says p(ε) ∝ (1 + ε)^(−ν) more than a
+/// pattern ε m can: the same as if ε were known about
+///
+/// > μ = −ν σ_s²/(1 + ε₀),   μ_l = −ν σ_g²/(n (1 + ε₀_l)),   n frames
+///
+/// in place of 0, where ln (1 + ε) is linear about ε₀.
 pub(super) struct Linear {
     pub(super) phi: DMatrix<f64>,
     pub(super) d: DMatrix<f64>,
     soft: Soft,
+    /// μ_l and μ.
+    means: (DVector<f64>, f64),
+    /// ln of what that prior has more at ε₀ than one about 0 times (1 + ε)^(−ν).
+    log_prior: f64,
 }
 
 impl Linear {
@@ -58,11 +72,30 @@ impl Linear {
             }
             own
         };
-        // What the linear terms in ε hold at the estimates.
-        let shift = by_frame(&light, &|frame| {
-            (frame - 1.0) * whole + (whole - 1.0) * frame
-        });
         let nuisance = &problem.nuisance;
+        let square = |known: Option<f64>| known.map_or(0.0, |known| known * known);
+        let of_each = at.directions / at.frames.len() as f64;
+        let frames = at.frames.map(|frame| of_each / factor(frame));
+        let common = at.directions / whole;
+        let frame_mean = -frames.clone() * square(nuisance.frame_gain);
+        let mean = -common * square(nuisance.scale_error);
+        // What the linear terms in ε hold at the estimates, less their means.
+        let mut shift = by_frame(&light, &|frame| {
+            (frame - 1.0) * whole + (whole - 1.0 - mean) * frame
+        });
+        for (l, mut column) in shift.column_iter_mut().enumerate() {
+            column.axpy(-frame_mean[l] * whole, &light.column(l), 1.0);
+        }
+        let log_prior = |by: f64, mean: f64, at: f64| by * (at - 0.5 * mean);
+        let of_frames = frames.iter().zip(&frame_mean).zip(&at.frames);
+        let of_frames = of_frames.map(|((by, mean), at)| log_prior(*by, *mean, *at));
+        let mut all = 0.0;
+        if nuisance.frame_gain.is_some() {
+            all += of_frames.sum::<f64>();
+        }
+        if nuisance.scale_error.is_some() {
+            all += log_prior(common, mean, at.whole);
+        }
         Self {
             phi: problem.phi + shift,
             d: by_frame(d, &|frame| frame * whole),
@@ -71,7 +104,24 @@ impl Linear {
                 whole: nuisance.scale_error.map(|known| (&at.x / whole, known)),
                 noise: at.noise,
             },
+            means: (frame_mean, mean),
+            log_prior: all,
         }
+    }
+
+    /// What a method found of this problem, its factors about 1 and its evidence with their prior.
+    pub(super) fn about_one(&self, mut found: Recovered) -> Recovered {
+        let gains = found.nuisance.as_mut().and_then(|n| n.gains.as_mut());
+        if let Some(gains) = gains {
+            if let Some(frames) = &mut gains.frames {
+                frames.size += &self.means.0;
+            }
+            if let Some(whole) = &mut gains.whole {
+                whole.size.add_scalar_mut(self.means.1);
+            }
+        }
+        found.log_evidence = found.log_evidence.map(|evidence| evidence + self.log_prior);
+        found
     }
 
     /// The linear problem; `base` is that without factors.
@@ -97,6 +147,7 @@ pub(super) fn about_grey<T>(
         frames: DVector::zeros(problem.phi.ncols()),
         whole: 0.0,
         noise: 1.0,
+        directions: 0.0,
     };
     of(&Linear::about(problem, &at).problem(&problem.without_gains()))
 }
