@@ -6,7 +6,7 @@ use numpy::PyArray2;
 use phicam::jobs::need;
 use phicam::lab::{Integration, inverted};
 use phicam::model::{
-    Differential, Extent, Fineness, Kernel, MatrixModel, ModelError, Occlusion, converged,
+    Differential, Effort, Extent, Fineness, Kernel, MatrixModel, ModelError, Occlusion, converged,
 };
 use phicam::scene::{self, Parameter};
 use pyo3::prelude::*;
@@ -61,7 +61,13 @@ impl Model {
         let elements = elements.map(Into::into);
         fits(py, &own, move |scene| need::model(scene, elements, false))?;
         let made = run(py, None, None, move |_| {
-            inverted(&own, kernel, elements, occlusion, integration)
+            inverted(
+                &own,
+                kernel,
+                elements,
+                occlusion,
+                (integration, Effort::FINEST),
+            )
         })?;
         Ok(Self {
             inner: Arc::new(made.raise()?),

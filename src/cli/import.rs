@@ -152,6 +152,15 @@ fn one(
             100.0 * account.common
         ));
     }
+    let of_flat = Errors::of_common(account.of_flat, scene.laser.spots.len());
+    if of_flat != Errors::Independent {
+        console.say(format!(
+            "warning: {:.2} % of the variance is that of the flat field, a factor of each pixel that all \
+             spots share; recover and validate take it for independent, so that errors of the picture \
+             are too small and χ² scatters more than is said; take more photographs of the flat field",
+            100.0 * account.of_flat
+        ));
+    }
     let json = output::json(&Written {
         version: version(),
         account,

@@ -26,7 +26,7 @@ use crate::lab::{
 };
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
-use crate::model::MatrixModel;
+use crate::model::{Effort, MatrixModel};
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
 use crate::scene::Scene;
@@ -132,7 +132,8 @@ fn compare_and_recover(
     console.say("computing the model and comparing");
     let occlusion = args.occlusion.occlusion();
     let integration = args.test.integration;
-    let matrices = lab::inverted(&results.scene, kernel, None, occlusion, integration)?;
+    let by = (integration, Effort::FINEST);
+    let matrices = lab::inverted(&results.scene, kernel, None, occlusion, by)?;
     let measured = Measured::new(&results.phi, &results.stderr, Some(&results.tails));
     let against = Against {
         kernel,

@@ -17,6 +17,10 @@
 //!
 //! χ²/(N − ν) is compared with χ² of N − ν degrees of freedom where entries are independent, of
 //! fewer where those of a row are not, of one where all hang together ([`Errors`]).
+//!
+//! A picture that is refuted so is held against the photographs once more, |Φ − Φ̂| less what the
+//! last steps of the model's integrals move of Φ̂ ([`Factors::moved`]): what these leave over is no
+//! evidence against it.
 
 mod attainable;
 
@@ -25,6 +29,7 @@ use serde::Serialize;
 use super::agreement::freedom_of_rows;
 use super::evidence::{Errors, FIT_LEVEL, freedom};
 use crate::matrix::Matrix;
+use crate::model::Factors;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::recovery::{Determined, Method, Options, Problem, Recovered, determined};
 use crate::transport::Plan;
@@ -81,6 +86,20 @@ pub struct Fit {
     pub level: f64,
     /// Whether it is not.
     pub fits: bool,
+    /// χ²/(N − ν) less what the integrals of the model may be off by; none where the picture fits
+    /// without, or nothing is known of them.
+    pub within_integration: Option<f64>,
+}
+
+/// What photographs are held against.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known<'a> {
+    /// Their standard errors, W.
+    pub stderr: &'a Matrix,
+    /// What is known of these.
+    pub certainty: Certainty,
+    /// The light of the elements, where it was integrated.
+    pub factors: Option<&'a Factors>,
 }
 
 /// Squared deviates, summed row after row.
@@ -136,21 +155,43 @@ impl Residuals {
             left_out: self.left_out,
             level: FIT_LEVEL,
             fits: p >= FIT_LEVEL,
+            within_integration: None,
         })
     }
 }
 
 /// The fit of `found` to the photographs of `problem`.
-fn fit(
-    problem: &Problem<'_>,
-    (stderr, certainty): (&Matrix, Certainty),
-    found: &Recovered,
-) -> Option<Fit> {
-    let mut residuals = Residuals::default();
-    let seen = found.photographs(problem);
+fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit> {
+    let Known {
+        stderr,
+        certainty,
+        factors,
+    } = known;
+    let phi = problem.photographed();
     let stderr = problem.counted(stderr.clone());
-    residuals.add(problem.photographed(), &seen, &stderr, certainty);
-    residuals.fit(found.freedom_used(), certainty.errors)
+    let of = |seen: &Matrix| {
+        let mut residuals = Residuals::default();
+        residuals.add(phi, seen, &stderr, certainty);
+        residuals.fit(found.freedom_used(), certainty.errors)
+    };
+    let seen = found.photographs(problem);
+    let fit = of(&seen)?;
+    let steps = factors.filter(|of| !fit.fits && !of.steps.is_empty());
+    let Some(factors) = steps else {
+        return Some(fit);
+    };
+    let picture = found.seen();
+    let moved = factors.moved(picture.as_slice());
+    let off = moved.fold(seen.map(|_| 0.0), |sum, step| sum + step.abs());
+    let nearest = seen.zip_zip_map(phi, &off, |seen, phi, off| {
+        seen + (phi - seen).clamp(-off, off)
+    });
+    let within = of(&nearest)?;
+    Some(Fit {
+        within_integration: Some(within.chi2_per_dof),
+        fits: within.fits,
+        ..fit
+    })
 }
 
 /// How far a recovery is to be believed, as the photographs themselves say.
@@ -180,7 +221,7 @@ impl Judged {
     /// photographs determine.
     pub(super) fn any(
         problem: &Problem<'_>,
-        noise: Option<(&Matrix, Certainty)>,
+        noise: Option<Known<'_>>,
         found: &[&Recovered],
         options: &Options,
     ) -> Self {
@@ -196,8 +237,8 @@ impl Judged {
                 .filter(|_| !found.is_empty())
                 .and_then(|noise| Attainable::of(problem, noise, found, options)),
             determined: few.then(|| determined(problem).ok()).flatten(),
-            errors: noise.map(|(_, certainty)| certainty.errors),
-            replicates: noise.and_then(|(_, certainty)| certainty.replicates),
+            errors: noise.map(|known| known.certainty.errors),
+            replicates: noise.and_then(|known| known.certainty.replicates),
         }
     }
 
@@ -205,7 +246,7 @@ impl Judged {
     pub(super) fn of(
         &self,
         problem: &Problem<'_>,
-        noise: Option<(&Matrix, Certainty)>,
+        noise: Option<Known<'_>>,
         found: &Recovered,
     ) -> Self {
         let two_valued = found.method == Method::JointTwoValued;

@@ -34,7 +34,7 @@ use super::misplaced::{self, Misplaced};
 use super::problem::inverted;
 use super::unexplained::Unexplained;
 use super::validation::Integration;
-use crate::model::{ElementGrid, Kernel, MatrixModel, Occlusion};
+use crate::model::{Effort, ElementGrid, Kernel, MatrixModel, Occlusion};
 use crate::scene::Scene;
 use crate::transport::Control;
 use found::Picture;
@@ -186,7 +186,7 @@ impl LocatedPlan {
             kernel,
             self.elements,
             self.occlusion,
-            self.integration,
+            (self.integration, Effort::USUAL),
         );
         Ok(model?)
     }

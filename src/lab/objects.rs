@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::chosen::{Beside, Chosen, Ended, words};
 use super::doubt::doubts;
-use super::fit::{Certainty, Judged};
+use super::fit::{Certainty, Judged, Known};
 use super::likelier::likelier;
 use super::measures::Measures;
 use super::problem::problem;
@@ -32,9 +32,13 @@ pub enum Noise<'a> {
 }
 
 impl<'a> Noise<'a> {
-    fn known(self) -> Option<(&'a Matrix, Certainty)> {
+    fn known(self, model: &'a MatrixModel) -> Option<Known<'a>> {
         match self {
-            Self::StandardError(stderr, certainty) => Some((stderr, certainty)),
+            Self::StandardError(stderr, certainty) => Some(Known {
+                stderr,
+                certainty,
+                factors: model.factors.as_ref(),
+            }),
             Self::Unknown => None,
         }
     }
@@ -109,7 +113,7 @@ fn ready<'a>(
     grids: &'a [[usize; 2]],
     shared: &'a Shared,
 ) -> Result<Problem<'a>, RecoveryError> {
-    let problem = problem(model, phi, noise.known().map(|known| known.0))?;
+    let problem = problem(model, phi, noise.known(model).map(|known| known.stderr))?;
     let mut problem = problem.with_grids(grids)?.with_nuisance(nuisance)?;
     if !model.places.is_empty() {
         problem = problem.with_places(&model.places)?;
@@ -143,7 +147,7 @@ fn attempts(
             })
         })
         .collect();
-    let known = noise.known();
+    let known = noise.known(model);
     let all: Vec<&Recovered> = found.iter().flatten().collect();
     let any = Judged::any(problem, known, &all, options);
     // Photographs that nothing explains are likeliest by no assumption.

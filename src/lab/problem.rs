@@ -2,7 +2,9 @@
 
 use super::validation::Integration;
 use crate::matrix::Matrix;
-use crate::model::{Factors, Kernel, MatrixModel, ModelError, Occlusion};
+use crate::model::{
+    Effort, ElementGrid, Factors, Kernel, MatrixModel, ModelError, Occlusion, element_grids,
+};
 use crate::recovery::{Problem, RecoveryError, Terms};
 use crate::scene::Scene;
 
@@ -11,8 +13,8 @@ use crate::scene::Scene;
 pub const MOST_INTEGRATED: usize = 1024;
 
 /// The model by which photographs of `scene` are inverted. By quadrature the light of each of up to
-/// 1024 elements is integrated over its area, footprints and spots ([`MatrixModel::over_areas`]),
-/// with the physical kernel; the published one is that of the centres.
+/// 1024 elements is integrated over its area, footprints and spots ([`MatrixModel::over_areas`])
+/// with this effort, with the physical kernel; the published one is that of the centres.
 ///
 /// # Errors
 /// Those of [`MatrixModel::new`] and [`MatrixModel::over_areas`].
@@ -21,16 +23,17 @@ pub fn inverted(
     kernel: Kernel,
     elements: Option<[usize; 2]>,
     occlusion: Occlusion,
-    integration: Integration,
+    (integration, effort): (Integration, Effort),
 ) -> Result<MatrixModel, ModelError> {
-    let model = MatrixModel::with(scene, kernel, elements, occlusion)?;
+    let grids = element_grids(scene, elements)?;
+    let count: usize = grids.iter().map(ElementGrid::len).sum();
     let integrated = integration == Integration::Quadrature
         && kernel == Kernel::Physical
-        && model.albedo.len() <= MOST_INTEGRATED;
+        && count <= MOST_INTEGRATED;
     if integrated {
-        model.over_areas(scene)
+        MatrixModel::over_areas(scene, kernel, elements, occlusion, effort)
     } else {
-        Ok(model)
+        MatrixModel::with(scene, kernel, elements, occlusion)
     }
 }
 

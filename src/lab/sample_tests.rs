@@ -67,6 +67,7 @@ fn fit(chi2_per_dof: f64) -> Fit {
         left_out: 0,
         level: 1e-3,
         fits: true,
+        within_integration: None,
     }
 }
 

@@ -1,7 +1,7 @@
 //! How far elements, footprints and spots are divided past what stands in the way.
 
 /// Relative change below which no finer cells are tried; the next halving would change a fourth.
-pub(super) const TARGET: f64 = 1e-3;
+const TARGET: f64 = 1e-3;
 
 /// When the division of cells, footprints and spots ends.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::cells::{HiddenCell, cells_of_elements};
 use super::cut::Cut;
 use super::divided;
-use super::effort::{Effort, TARGET};
+use super::effort::Effort;
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
@@ -32,6 +32,24 @@ pub struct Factors {
     pub change: f64,
     /// Cells of the hidden surfaces in the last step.
     pub cells: usize,
+    /// All A_j before and after the last halving of the cells, and by two divisions of footprints
+    /// and spots; none where they were not to be kept.
+    pub steps: Vec<[Terms; 2]>,
+}
+
+impl Factors {
+    /// What each of the steps moves in Φcam of elements with these albedos, pixels × spots, W.
+    pub fn moved(&self, albedo: &[f64]) -> impl Iterator<Item = Matrix> {
+        let steps = self.steps.iter();
+        steps.map(|[before, after]| after.phi(albedo) - before.phi(albedo))
+    }
+
+    /// Multiplies the camera's side by `factor`.
+    pub(super) fn scale(&mut self, factor: f64) {
+        let all = self.steps.iter_mut().flatten();
+        all.chain([&mut self.terms])
+            .for_each(|terms| terms.camera *= factor);
+    }
 }
 
 /// How one hidden surface is divided.
@@ -65,7 +83,7 @@ pub(super) type Shares = [Matrix; 2];
 
 /// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
 const MOST_HALVINGS: u32 = 5;
-/// The same of what is extrapolated.
+/// Relative change below which what is extrapolated is fine enough.
 const SMOOTH_TARGET: f64 = 1e-4;
 /// Cells at the end, of each that was cut once.
 const FINAL: usize = 16;
@@ -73,26 +91,23 @@ const FINAL: usize = 16;
 /// Level of the rule on footprints where nothing is in the way.
 const LEVEL: usize = 1;
 
-/// The factors of the elements, settled to a change of 1e-3; of 1e-4 with nothing in the way.
+/// The factors of the elements with this effort; settled to 1e-4 with nothing in the way.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
-pub(super) fn factors(
-    scene: &Scene,
+pub(super) fn factors<'a>(
+    scene: &'a Scene,
     kernel: Kernel,
     obstacles: &[ShapeId],
     grids: &[ElementGrid],
-) -> Result<(Factors, Shares), ModelError> {
-    let target = if obstacles.is_empty() {
-        SMOOTH_TARGET
-    } else {
-        TARGET
+    effort: Effort,
+) -> Result<Settled<'a>, ModelError> {
+    let smooth = Effort {
+        target: SMOOTH_TARGET,
+        ..effort
     };
-    let effort = Effort {
-        target,
-        ..Effort::USUAL
-    };
-    Ok(settled(scene, kernel, obstacles, grids, effort)?.joined())
+    let effort = if obstacles.is_empty() { smooth } else { effort };
+    settled(scene, kernel, obstacles, grids, effort)
 }
 
 /// Elements in cells that are fine enough.
@@ -101,6 +116,10 @@ pub(super) struct Settled<'a> {
     /// Of each element.
     pub cells: Vec<Vec<HiddenCell>>,
     own: Vec<Own>,
+    /// Before the last halving of the cells.
+    before: Vec<Own>,
+    /// By the footprints and spots that are taken and by others, for elements cut once.
+    walls: Option<[Vec<Own>; 2]>,
     change: f64,
 }
 
@@ -151,24 +170,33 @@ pub(super) fn settled<'a>(
         |(_, now), (_, next)| moved(now, next),
         target,
     )?;
-    let (past, mut now) = walls.used;
-    let left = walls.other.map_or(0.0, |(_, other)| moved(&other, &now));
+    let (past, rough) = walls.used;
+    let other = walls.other.map(|(_, other)| other);
+    let left = other.as_ref().map_or(0.0, |other| moved(other, &rough));
     let occlusion = &past.occlusion;
+    let mut before: Option<Vec<Own>> = None;
     loop {
         let exhausted = 4.0 * (count(&of) * occlusion.walls) as f64 > occlusion.most_pairs();
         halvings += 1;
         of = cut_in(halvings);
         let next = past.all(&of)?;
-        let change = moved(&now, &next);
-        now = next;
+        let change = moved(before.as_ref().unwrap_or(&rough), &next);
         if exhausted || halvings == MOST_HALVINGS || change < target {
+            let (before, walls) = match (before, other) {
+                (None, None) => (rough, None),
+                (None, Some(other)) => (rough.clone(), Some([rough, other])),
+                (Some(before), other) => (before, other.map(|other| [rough, other])),
+            };
             return Ok(Settled {
                 past,
                 cells: of,
-                own: now,
+                own: next,
+                before,
+                walls,
                 change: change + left,
             });
         }
+        before = Some(next);
     }
 }
 
@@ -189,6 +217,7 @@ fn cells_of(
 
 /// An element's terms, and its light without and with what stands in the way, summed over its
 /// cells.
+#[derive(Clone)]
 struct Own {
     camera: Matrix,
     laser: Matrix,
@@ -283,12 +312,28 @@ impl Settled<'_> {
             Matrix::from_fn(pixels, all.len(), |p, j| share(all[j].seen[p])),
             Matrix::from_fn(all.len(), spots, |j, l| share(all[j].lit[l])),
         ];
-        let each: Vec<_> = all.iter().map(|own| (&own.camera, &own.laser)).collect();
         let factors = Factors {
-            terms: Terms::stacked(&each, (pixels, spots)),
+            terms: stacked(all),
             change: self.change,
             cells: self.cells.iter().map(Vec::len).sum(),
+            steps: Vec::new(),
         };
         (factors, shares)
     }
+
+    /// [`Factors::steps`].
+    pub(super) fn steps(&self) -> Vec<[Terms; 2]> {
+        let walls = self.walls.iter().map(|[used, other]| [used, other]);
+        let all = [[&self.before, &self.own]].into_iter().chain(walls);
+        all.map(|pair| pair.map(|own| stacked(own))).collect()
+    }
+}
+
+/// The terms of all elements one behind the other.
+fn stacked(all: &[Own]) -> Terms {
+    let size = all
+        .first()
+        .map_or((0, 0), |own| (own.seen.len(), own.lit.len()));
+    let each: Vec<_> = all.iter().map(|own| (&own.camera, &own.laser)).collect();
+    Terms::stacked(&each, size)
 }

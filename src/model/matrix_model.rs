@@ -2,13 +2,14 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use super::effort::Effort;
 use super::error::ModelError;
 use super::extent::Occlusion;
-use super::factors::{ElementGrid, Factors, factors};
+use super::factors::{ElementGrid, Factors, Shares, factors};
 use super::kernel::{HiddenPoint, Kernel};
 use super::obstacles::obstacles;
 use super::wall_point::{self, WallPoint};
-use crate::geometry::DVec3;
+use crate::geometry::{DVec3, ShapeId};
 use crate::matrix::Matrix;
 use crate::num::linalg::rows_times;
 use crate::scene::{Division, Scene};
@@ -50,12 +51,20 @@ pub fn is_obstructed(scene: &Scene) -> bool {
     !obstacles(scene).is_empty()
 }
 
+/// What may stand in the way and is considered.
+fn considered(scene: &Scene, occlusion: Occlusion) -> Vec<ShapeId> {
+    match occlusion {
+        Occlusion::Considered => obstacles(scene),
+        Occlusion::Ignored => Vec::new(),
+    }
+}
+
 /// How the hidden surfaces of `scene` are divided; `elements` replaces the elements a side that it
 /// gives.
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
-pub(super) fn element_grids(
+pub fn element_grids(
     scene: &Scene,
     elements: Option<[usize; 2]>,
 ) -> Result<Vec<ElementGrid>, ModelError> {
@@ -160,6 +169,28 @@ impl MatrixModel {
         Self::beside(scene, kernel, elements, 0.0)?.past(scene, occlusion)
     }
 
+    /// The same with the light of each element integrated over its area, over footprints and spots,
+    /// also where nothing stands in the way, with this effort; [`Factors::steps`] says how far it
+    /// may be off. C and D stay those of the centres, times the visible share.
+    ///
+    /// # Errors
+    /// Those of [`MatrixModel::new`], and [`ModelError::Linalg`].
+    pub fn over_areas(
+        scene: &Scene,
+        kernel: Kernel,
+        elements: Option<[usize; 2]>,
+        occlusion: Occlusion,
+        effort: Effort,
+    ) -> Result<Self, ModelError> {
+        let photographs = scene.camera.pixels() as f64 * scene.laser.spots.len() as f64;
+        let model = Self::beside(scene, kernel, elements, photographs)?;
+        let obstacles = considered(scene, occlusion);
+        let settled = factors(scene, kernel, &obstacles, &model.grids, effort)?;
+        let (factors, shares) = settled.joined();
+        let steps = settled.steps();
+        Ok(model.with_factors((Factors { steps, ..factors }, shares)))
+    }
+
     fn beside(
         scene: &Scene,
         kernel: Kernel,
@@ -229,15 +260,17 @@ impl MatrixModel {
 
     /// The same past what stands in the way: C and D times the visible share of each entry, and the
     /// terms of each element.
-    fn past(mut self, scene: &Scene, occlusion: Occlusion) -> Result<Self, ModelError> {
-        let obstacles = match occlusion {
-            Occlusion::Considered => obstacles(scene),
-            Occlusion::Ignored => Vec::new(),
-        };
+    fn past(self, scene: &Scene, occlusion: Occlusion) -> Result<Self, ModelError> {
+        let obstacles = considered(scene, occlusion);
         if obstacles.is_empty() {
             return Ok(self);
         }
-        let (factors, [seen, lit]) = factors(scene, self.kernel, &obstacles, &self.grids)?;
+        let settled = factors(scene, self.kernel, &obstacles, &self.grids, Effort::USUAL)?;
+        Ok(self.with_factors(settled.joined()))
+    }
+
+    /// The factors of the elements; C and D times the visible share of each entry.
+    fn with_factors(mut self, (factors, [seen, lit]): (Factors, Shares)) -> Self {
         for side in [&mut self.g23, &mut self.camera_side] {
             side.component_mul_assign(&seen);
         }
@@ -245,21 +278,7 @@ impl MatrixModel {
             side.component_mul_assign(&lit);
         }
         self.factors = Some(factors);
-        Ok(self)
-    }
-
-    /// The same with the light of each element integrated over its area, over footprints and spots,
-    /// also where nothing stands in the way ([`MatrixModel::factors`]); C and D stay those of the
-    /// centres.
-    ///
-    /// # Errors
-    /// [`ModelError::Linalg`].
-    pub fn over_areas(mut self, scene: &Scene) -> Result<Self, ModelError> {
-        if self.factors.is_none() {
-            let (terms, _) = factors(scene, self.kernel, &[], &self.grids)?;
-            self.factors = Some(terms);
-        }
-        Ok(self)
+        self
     }
 
     /// C·diag(ρ)·D, pixels × spots, W: with one term an element.
@@ -297,7 +316,7 @@ impl MatrixModel {
     pub fn scale(&mut self, factor: f64) {
         self.camera_side *= factor;
         if let Some(factors) = &mut self.factors {
-            factors.terms.camera *= factor;
+            factors.scale(factor);
         }
     }
 }

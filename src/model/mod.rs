@@ -45,7 +45,7 @@ pub use error::ModelError;
 pub use extent::{Extent, Occlusion, Take};
 pub use factors::{ElementGrid, Factors};
 pub use kernel::Kernel;
-pub use matrix_model::{MatrixModel, is_obstructed};
+pub use matrix_model::{MatrixModel, element_grids, is_obstructed};
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
 pub use swept::Swept;
 pub use terms::{Terms, TermsRate};

@@ -59,6 +59,8 @@ pub struct ImportAccount {
     /// Part of the variance that is that of the dark frames, which all spots of a pixel share, mean
     /// over the entries.
     pub common: f64,
+    /// The same of the flat field, a factor of each pixel that all spots share.
+    pub of_flat: f64,
     /// Entries that are left out.
     pub left_out: LeftOut,
     /// What a user has to know.

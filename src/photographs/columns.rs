@@ -23,8 +23,10 @@ pub(super) struct Columns {
     pub gains: Vec<(usize, f64, f64)>,
     pub photographs: usize,
     pub zeros: f64,
-    /// Part of the variance that all spots of a pixel have in common, mean over the entries.
+    /// Part of the variance that is that of the dark frames, mean over the entries.
     pub common: f64,
+    /// Part of the variance that is that of the flat field, mean over the entries.
+    pub of_flat: f64,
 }
 
 impl Columns {
@@ -56,6 +58,7 @@ impl Columns {
             photographs: 0,
             zeros: 0.0,
             common: 0.0,
+            of_flat: 0.0,
         };
         let code = Codes {
             set,
@@ -76,6 +79,7 @@ impl Columns {
             found.photographs += mean.frames;
             found.zeros += mean.cut_off();
             found.common += corrected.common;
+            found.of_flat += corrected.of_flat;
             seen += 1;
             for (mean, flux) in found.mean.iter_mut().zip(&corrected.flux) {
                 *mean += flux;
@@ -108,6 +112,7 @@ impl Columns {
         shots.each_spot(reader, visit)?;
         found.mean.iter_mut().for_each(|x| *x /= seen.max(1) as f64);
         found.common /= seen.max(1) as f64;
+        found.of_flat /= seen.max(1) as f64;
         if found.phi.iter().any(|x| !x.is_finite()) {
             return Err(refused(
                 "a flux comes out as infinite",

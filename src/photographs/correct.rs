@@ -39,6 +39,8 @@ pub struct Corrected {
     /// Part of the variance that is that of the dark frames, mean over the pixels: an error that
     /// all photographs have in common.
     pub common: f64,
+    /// The same of the flat field: a factor of each pixel that all photographs have in common.
+    pub of_flat: f64,
 }
 
 /// Part of the mean below which a pixel of a flat field counts as dead.
@@ -110,7 +112,7 @@ impl Correction<'_> {
         let pixels = shot.light.len();
         let mut flux = vec![0.0; pixels];
         let mut variance = self.noise.map(|_| vec![0.0; pixels]);
-        let (mut common, mut known) = (0.0, 0u32);
+        let (mut common, mut of_flat, mut known) = (0.0, 0.0, 0u32);
         for k in 0..pixels {
             let (level, level_variance) = match self.flat {
                 Some(flat) if flat.unusable[k] => continue,
@@ -126,9 +128,11 @@ impl Correction<'_> {
                 };
                 let own = of(shot, shot.light[k] - signal);
                 let dark = self.dark.map_or(0.0, |d| of(d, d.light[k]));
-                variance[k] = (own + dark) * scale * scale + level_variance * flux[k] * flux[k];
+                let flat = level_variance * flux[k] * flux[k];
+                variance[k] = (own + dark) * scale * scale + flat;
                 if variance[k] > 0.0 {
                     common += dark * scale * scale / variance[k];
+                    of_flat += flat / variance[k];
                     known += 1;
                 }
             }
@@ -137,6 +141,7 @@ impl Correction<'_> {
             flux,
             variance,
             common: common / f64::from(known.max(1)),
+            of_flat: of_flat / f64::from(known.max(1)),
         })
     }
 }
@@ -182,8 +187,14 @@ mod tests {
         let due = (own + 9.0 + lsb) / 2.25 + of_flat * 1600.0;
         assert!((found.variance.unwrap()[0] / due - 1.0).abs() < 1e-9);
         // The part of the dark frame, mean over the two pixels that the flat field serves.
-        let of_flat = (0.5 * 300.0 + 9.0 + lsb + 9.0 + lsb) / 9e4;
-        let other = (0.5 * 90.0 + 9.0 + lsb + 9.0 + lsb) / 20.25 + of_flat * 400.0;
+        let of_other_flat = (0.5 * 300.0 + 9.0 + lsb + 9.0 + lsb) / 9e4;
+        let other = (0.5 * 90.0 + 9.0 + lsb + 9.0 + lsb) / 20.25 + of_other_flat * 400.0;
+        let of_flats = 0.5 * (of_flat * 1600.0 / due + of_other_flat * 400.0 / other);
+        assert!(
+            (found.of_flat / of_flats - 1.0).abs() < 1e-9,
+            "{}",
+            found.of_flat
+        );
         let common = 0.5 * (9.0 + lsb) * (1.0 / 2.25 / due + 1.0 / 20.25 / other);
         assert!(
             (found.common / common - 1.0).abs() < 1e-9,

@@ -112,6 +112,7 @@ pub fn import(
         mark_residuals: fitted.map_or(Vec::new(), |f| f.residuals),
         gains: columns.gains,
         common: columns.common,
+        of_flat: columns.of_flat,
         left_out,
         warnings,
         files: reader.sources(),

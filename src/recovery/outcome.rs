@@ -189,7 +189,7 @@ impl Recovered {
     }
 
     /// x = s ρ.
-    pub(super) fn seen(&self) -> DVector<f64> {
+    pub fn seen(&self) -> DVector<f64> {
         let scale = self.nuisance.as_ref().and_then(|n| n.scale);
         &self.reflectance * scale.unwrap_or(1.0)
     }

@@ -1,7 +1,7 @@
 //! Laws of what is seen past an obstacle by wide spots and coarse pixels.
 
 use phicam::matrix::Matrix;
-use phicam::model::{Converged, Extent, Kernel, MatrixModel, converged};
+use phicam::model::{Converged, Effort, Extent, Kernel, MatrixModel, Occlusion, converged};
 use phicam::scene::Scene;
 
 /// A wall in the plane x = 0 of the file, a board beside it, and a plate between.
@@ -28,11 +28,9 @@ pub(super) fn by_quadrature(scene: &Scene) -> Converged {
 
 /// By the elements' factors.
 fn by_elements(scene: &Scene) -> Matrix {
-    MatrixModel::new(scene, Kernel::Physical, None)
-        .unwrap()
-        .over_areas(scene)
-        .unwrap()
-        .phi()
+    let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
+    let model = MatrixModel::over_areas(scene, kernel, None, occlusion, Effort::USUAL);
+    model.unwrap().phi()
 }
 
 /// What a pixel sees is the sum of what its parts see, to 5e-4 and within the stated bounds.

@@ -13,7 +13,7 @@ use crate::cli::recover_options::uncertainty;
 use crate::cli::recovered::recovering;
 use crate::cli::run_folder::{PHI, SATURATED, STDERR};
 use crate::lab::{Attempt, Certainty, Noise, inverted, recover_with_picards};
-use crate::model::MatrixModel;
+use crate::model::{Effort, MatrixModel};
 use crate::recovery::{Method, Options, Picard};
 use crate::scene::Scene;
 
@@ -58,7 +58,7 @@ impl RecoveryRequest<'_> {
             args.kernel,
             args.elements,
             occlusion,
-            args.integration,
+            (args.integration, Effort::FINEST),
         )?;
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, self.certainty)

@@ -18,7 +18,20 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
     if let Some(best) = judged.best.as_ref().filter(|best| !best.possible.fits) {
         return Some(contradiction(best));
     }
-    let fit = judged.fit.as_ref().filter(|fit| !fit.fits)?;
+    let fit = judged.fit.as_ref()?;
+    if let Some(within) = fit.within_integration.filter(|_| fit.fits) {
+        return Some(format!(
+            "whether it fits CANNOT BE TOLD: it differs from the photographs by more than their noise ({}), \
+             but by no more than the integrals of the model may be off (with that taken off χ²/dof {}). The \
+             errors of the picture know of noise alone: they are TOO SMALL. More --elements are integrated \
+             more finely",
+            told(fit),
+            significant(within, 3)
+        ));
+    }
+    if fit.fits {
+        return None;
+    }
     if judged.left_over.is_some() {
         return Some(format!(
             "DOES NOT FIT: it leaves more of the photographs over than noise of one size could, of which \

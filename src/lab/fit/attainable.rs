@@ -1,6 +1,6 @@
 //! What the best picture of all can do.
 
-use super::{Certainty, Fit, MOST_ELEMENTS, Residuals, fit};
+use super::{Certainty, Fit, Known, MOST_ELEMENTS, Residuals, fit};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::fisher_sf;
@@ -24,7 +24,7 @@ impl Attainable {
     /// noise model, and where there are too many elements for a search that no one asked for.
     pub(in crate::lab) fn of(
         problem: &Problem<'_>,
-        noise: (&Matrix, Certainty),
+        noise: Known<'_>,
         found: &[&Recovered],
         options: &Options,
     ) -> Option<Self> {
@@ -135,6 +135,7 @@ impl LeftOver {
             left_out: own.left_out,
             level: FIT_LEVEL,
             fits: false,
+            within_integration: None,
         })
     }
 }

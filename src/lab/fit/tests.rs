@@ -1,9 +1,19 @@
 use super::*;
 use crate::lab::ensemble::Photographs;
+use crate::lab::misplaced::normal;
 use crate::lab::problem::problem;
 use crate::lab::study::tests::small;
-use crate::model::{Kernel, MatrixModel};
+use crate::model::{Effort, Extent, Kernel, MatrixModel, Occlusion, converged};
 use crate::recovery::recover;
+use crate::scene::Scene;
+
+fn known<'a>(stderr: &'a Matrix, factors: Option<&'a Factors>) -> Known<'a> {
+    Known {
+        stderr,
+        certainty: Certainty::STATED,
+        factors,
+    }
+}
 
 /// One element, C = D = 1, σ = 0.5: ρ̂ is the mean 0.4 of 0.2, 0.3, 0.4, 0.7, so that χ² =
 /// (0.04 + 0.01 + 0 + 0.09)/0.25 = 0.56 with 3 degrees of freedom; a fifth entry has no error.
@@ -17,7 +27,7 @@ fn a_fit_by_hand() {
     let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
     let fitted = |problem: &Problem<'_>, method| {
         let found = recover(method, problem, &Options::default()).unwrap();
-        fit(problem, (&stderr, Certainty::STATED), &found).unwrap()
+        fit(problem, known(&stderr, None), &found).unwrap()
     };
     let free = fitted(&problem, Method::JointUnbounded);
     assert!((free.chi2_per_dof - 0.56 / 3.0).abs() < 1e-12, "{free:?}");
@@ -58,7 +68,16 @@ fn p_values_of_a_right_model_are_uniform() {
                 let shot = Photographs::relative(&exact, 0.05, *seed);
                 let problem = problem(&model, &shot.phi, Some(&shot.stderr)).unwrap();
                 let found = recover(method, &problem, &Options::default()).unwrap();
-                fit(&problem, (&shot.stderr, certainty), &found).unwrap().p < 0.1
+                fit(
+                    &problem,
+                    Known {
+                        certainty,
+                        ..known(&shot.stderr, None)
+                    },
+                    &found,
+                )
+                .unwrap()
+                .p < 0.1
             });
             let alarms = alarms.count();
             assert!((21..=61).contains(&alarms), "{method} {levels:?}: {alarms}");
@@ -156,4 +175,55 @@ fn two_levels_are_held_against_any_where_the_noise_is_not_known() {
             assert_eq!(fit.is_some_and(|fit| !fit.fits), refuted, "seed {seed}");
         }
     }
+}
+
+/// Photographs past a plate near the wall, by another rule ([`converged`]), with noise that is less
+/// than what elements, footprints and spots divided as usual leave: refuted as they stand, open
+/// with what the last steps move; with the plate elsewhere refuted all the same.
+#[test]
+fn what_integrals_leave_over_is_no_evidence() {
+    let scene = |place: &str| {
+        let text = Scene::load("periscope").unwrap().text;
+        let text = text
+            .replacen("pixels = [32, 32]", "pixels = [6, 6]", 1)
+            .replacen("per_side = 25", "per_side = 4", 1)
+            .replacen("elements = [8, 8]", "elements = [4, 4]", 1)
+            .replacen(
+                "[8, 8], dark = 0.0, light = 1.0",
+                "[4, 4], dark = 0.2, light = 0.8",
+                1,
+            )
+            .replacen("[4.44, 5.9, 2.0]", place, 1);
+        assert!(text.contains(place) && text.contains("dark = 0.2"));
+        Scene::from_toml("near", &text).unwrap()
+    };
+    let near = scene("[4.0, 4.0, 0.2]");
+    let clean = converged(&near, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi;
+    let stderr = clean.map(|x| 1.5e-4 * x + 5e-6 * clean.mean());
+    let mut draw = normal(5);
+    let phi = clean.zip_map(&stderr, |x, s| x + s * draw()[0]);
+    let judged = |scene: &Scene, with: bool| {
+        let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
+        let model = MatrixModel::over_areas(scene, kernel, None, occlusion, Effort::USUAL);
+        let model = model.unwrap();
+        let problem = problem(&model, &phi, Some(&stderr)).unwrap();
+        let found = recover(Method::Joint, &problem, &Options::default()).unwrap();
+        let factors = model.factors.as_ref().filter(|_| with);
+        fit(&problem, known(&stderr, factors), &found).unwrap()
+    };
+    let bare = judged(&near, false);
+    assert!(!bare.fits && bare.within_integration.is_none(), "{bare:?}");
+    let open = judged(&near, true);
+    assert!(
+        open.fits && open.within_integration.unwrap() < 1.2,
+        "{open:?}"
+    );
+    assert_eq!((open.p, open.chi2_per_dof), (bare.p, bare.chi2_per_dof));
+    let wrong = judged(&scene("[4.1, 4.0, 0.2]"), true);
+    assert!(
+        !wrong.fits && wrong.within_integration.unwrap() > 3.0,
+        "{wrong:?}"
+    );
 }

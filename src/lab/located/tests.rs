@@ -9,7 +9,7 @@ use crate::lab::Integration;
 use crate::lab::misplaced::normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::model::{Kernel, MatrixModel, Occlusion};
+use crate::model::{Effort, Kernel, MatrixModel, Occlusion};
 use crate::scene::{Scene, file::SceneFile};
 use crate::transport::Control;
 
@@ -192,8 +192,9 @@ const BRIGHT: [usize; 3] = [5, 6, 9];
 
 /// Photographs of `scene` with so much noise, relative to their root mean square.
 fn photographed(scene: &Scene, relative: f64, seed: u64) -> (Matrix, Matrix) {
-    let model = MatrixModel::new(scene, Kernel::Physical, Some([4, 4])).unwrap();
-    let model = model.over_areas(scene).unwrap();
+    let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
+    let model = MatrixModel::over_areas(scene, kernel, Some([4, 4]), occlusion, Effort::USUAL);
+    let model = model.unwrap();
     let albedo: Vec<f64> = (0..16)
         .map(|j| if BRIGHT.contains(&j) { 0.8 } else { 0.1 })
         .collect();

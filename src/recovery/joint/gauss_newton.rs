@@ -13,9 +13,9 @@
 //! ε unknown. The estimates are then set to what was found and all is done again, until the factors
 //! no longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
 //! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary; of
-//! `joint-gp`, which knows of what size x is, ε̂ is the likeliest whatever x ([`Linear`]): with x
-//! fitted the least picture, of the largest factor, would be. Its errors are then somewhat too large
-//! where N σ_s² is no longer small: 1.3 times for 36 elements and 7 %.
+//! `joint-gp`, which knows of what size x is, ε̂ is the likeliest whatever x ([`Linear`]): fitted
+//! together, the picture would be the least and the factor the largest. Its errors are then
+//! somewhat too large where N σ_s² is no longer small: 1.3 times for 36 elements and 7 %.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.

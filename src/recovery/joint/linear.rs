@@ -15,8 +15,8 @@ pub(super) struct Estimates {
     pub(super) whole: f64,
     /// 1 where the noise is known, else its standard deviation, W.
     pub(super) noise: f64,
-    /// ν, directions of x that are of a prior's size: with ε at its likeliest x is marginalised, not
-    /// fitted. 0 of methods whose x has no size beforehand.
+    /// ν, directions of x that are of a prior's size, over which ε is averaged; 0 of methods whose
+    /// x has no size beforehand.
     pub(super) directions: f64,
 }
 
