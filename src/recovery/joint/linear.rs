@@ -45,7 +45,7 @@ impl Estimates {
 /// Of what the photographs say of (1 + ε) x the prior of x says p(ε) ∝ (1 + ε)^(−ν) more than a
 /// pattern ε m can: the same as if ε were known about
 ///
-/// > μ = −ν σ_s²/(1 + ε₀),   μ_l = −ν σ_g²/(n (1 + ε₀_l)),   n frames
+/// > μ = −ν σ_s²/(1 + ε₀),   μ_l = −ν σ_g²/(n (1 + ε₀_l)),   n frames that count
 ///
 /// in place of 0, where ln (1 + ε) is linear about ε₀.
 pub(super) struct Linear {
@@ -74,8 +74,13 @@ impl Linear {
         };
         let nuisance = &problem.nuisance;
         let square = |known: Option<f64>| known.map_or(0.0, |known| known * known);
-        let of_each = at.directions / at.frames.len() as f64;
-        let frames = at.frames.map(|frame| of_each / factor(frame));
+        let (pixels, spots) = problem.phi.shape();
+        let is_seen = |l: usize| (0..pixels).any(|p| nuisance.counts(p, l));
+        let seen = (0..spots).filter(|l| is_seen(*l)).count();
+        let of_each = at.directions / seen.max(1) as f64;
+        let frames = DVector::from_fn(at.frames.len(), |l, _| {
+            f64::from(u8::from(is_seen(l))) * of_each / factor(at.frames[l])
+        });
         let common = at.directions / whole;
         let frame_mean = -frames.clone() * square(nuisance.frame_gain);
         let mean = -common * square(nuisance.scale_error);

@@ -585,6 +585,30 @@ fn factors_of_frames_do_not_lessen_the_picture() {
     assert!(mean.abs() < 0.02, "{mean}");
 }
 
+/// Of a frame that does not count nothing is known but what was said.
+#[test]
+fn a_frame_that_is_left_out_has_the_factor_that_was_said() {
+    let small = Small::new();
+    let phi = small.drawn(0.1, 0.0, 4);
+    let flags = DMatrix::from_fn(16, 12, |_, l| f64::from(u8::from(l == 5)));
+    let nuisance = Nuisance {
+        frame_gain: Some(0.1),
+        left_out: Some(&flags),
+        ..Nuisance::default()
+    };
+    let problem = small.problem(&phi, nuisance);
+    for method in [Method::JointGp, Method::JointUnbounded] {
+        let found = recover(method, &problem, &Options::default()).unwrap();
+        let frames = gains(&found).frames.as_ref().unwrap();
+        assert!(frames.size[5].abs() < 1e-12, "{method} {}", frames.size[5]);
+        assert!(
+            (frames.standard_error[5] / 0.1 - 1.0).abs() < 1e-9,
+            "{frames:?}"
+        );
+        assert!(frames.size[4].abs() > 1e-4, "{method} {}", frames.size[4]);
+    }
+}
+
 #[test]
 fn every_method_finds_the_factors() {
     let mut small = Small::new();
