@@ -1198,8 +1198,8 @@ BREAKS = [
     Break(
         "Factors of single frames do not lessen the picture",
         "src/recovery/joint/linear.rs",
-        "let frame_mean = -frames.clone() * square(nuisance.frame_gain);",
-        "let frame_mean = -frames.clone() * (0.0 * square(nuisance.frame_gain));",
+        "let frame_mean = &frames * -square(nuisance.frame_gain);",
+        "let frame_mean = &frames * -0.0 * square(nuisance.frame_gain);",
         "lib",
         "recovery::joint::gauss_newton::tests::factors_of_frames_do_not_lessen_the_picture",
         10,

@@ -176,9 +176,8 @@ fn certainty(pictures: &[&RecoveredObject]) -> Claim {
                 significant(fit.dof, 5),
                 figure(fit.p, 2)
             );
-            let open = fit.within_integration.is_some();
             let (tone, words) = match (fit.fits, first.contradicted()) {
-                (true, false) if open => (
+                (true, false) if fit.is_open() => (
                     Tone::Plain,
                     "whether it fits the photographs CANNOT BE TOLD",
                 ),

@@ -91,6 +91,14 @@ pub struct Fit {
     pub within_integration: Option<f64>,
 }
 
+impl Fit {
+    /// Whether it is neither refuted nor told: more than noise differs, but no more than the
+    /// integrals of the model may be off.
+    pub fn is_open(&self) -> bool {
+        self.fits && self.within_integration.is_some()
+    }
+}
+
 /// What photographs are held against.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known<'a> {

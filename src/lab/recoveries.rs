@@ -104,7 +104,7 @@ pub fn recovery(group: &[&RecoveredObject]) -> Table {
 /// Whether each method's picture explains the photographs.
 pub fn fits(group: &[&RecoveredObject]) -> Table {
     let verdict = |r: &RecoveredObject| match &r.fit {
-        Some(fit) if fit.fits && fit.within_integration.is_some() => "open",
+        Some(fit) if fit.is_open() => "open",
         Some(fit) if fit.fits => "yes",
         Some(_) => "NO",
         None => "not known",

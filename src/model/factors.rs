@@ -91,42 +91,25 @@ const FINAL: usize = 16;
 /// Level of the rule on footprints where nothing is in the way.
 const LEVEL: usize = 1;
 
-/// The factors of the elements with this effort; settled to 1e-4 with nothing in the way.
-///
-/// # Errors
-/// [`ModelError::Linalg`].
-pub(super) fn factors<'a>(
-    scene: &'a Scene,
-    kernel: Kernel,
-    obstacles: &[ShapeId],
-    grids: &[ElementGrid],
-    effort: Effort,
-) -> Result<Settled<'a>, ModelError> {
-    let smooth = Effort {
-        target: SMOOTH_TARGET,
-        ..effort
-    };
-    let effort = if obstacles.is_empty() { smooth } else { effort };
-    settled(scene, kernel, obstacles, grids, effort)
-}
-
 /// Elements in cells that are fine enough.
 pub(super) struct Settled<'a> {
     pub past: Past<'a>,
     /// Of each element.
     pub cells: Vec<Vec<HiddenCell>>,
     own: Vec<Own>,
-    /// Before the last halving of the cells.
-    before: Vec<Own>,
-    /// By the footprints and spots that are taken and by others, for elements cut once.
-    walls: Option<[Vec<Own>; 2]>,
+    /// Of elements cut once, and by another division of footprints and spots.
+    rough: Vec<Own>,
+    other: Option<Vec<Own>>,
+    /// Before the last halving of the cells, where that was not the first.
+    before: Option<Vec<Own>>,
     change: f64,
 }
 
 /// The elements of a scene, cells of them cut in four until all A_j together change by less than
 /// the target, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
-/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3; else
-/// footprints and spots are divided until that changes the A_j of elements cut once by less.
+/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3, to a
+/// target of 1e-4; else footprints and spots are divided until that changes the A_j of elements cut
+/// once by less.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
@@ -139,6 +122,7 @@ pub(super) fn settled<'a>(
 ) -> Result<Settled<'a>, ModelError> {
     let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
     let is_smooth = obstacles.is_empty();
+    let target = if is_smooth { SMOOTH_TARGET } else { target };
     let cut_in = |halvings: u32| {
         if !is_smooth {
             return cells_of(&hidden, grids, halvings, 1.0);
@@ -182,17 +166,13 @@ pub(super) fn settled<'a>(
         let next = past.all(&of)?;
         let change = moved(before.as_ref().unwrap_or(&rough), &next);
         if exhausted || halvings == MOST_HALVINGS || change < target {
-            let (before, walls) = match (before, other) {
-                (None, None) => (rough, None),
-                (None, Some(other)) => (rough.clone(), Some([rough, other])),
-                (Some(before), other) => (before, other.map(|other| [rough, other])),
-            };
             return Ok(Settled {
                 past,
                 cells: of,
                 own: next,
+                rough,
+                other,
                 before,
-                walls,
                 change: change + left,
             });
         }
@@ -217,7 +197,6 @@ fn cells_of(
 
 /// An element's terms, and its light without and with what stands in the way, summed over its
 /// cells.
-#[derive(Clone)]
 struct Own {
     camera: Matrix,
     laser: Matrix,
@@ -323,8 +302,9 @@ impl Settled<'_> {
 
     /// [`Factors::steps`].
     pub(super) fn steps(&self) -> Vec<[Terms; 2]> {
-        let walls = self.walls.iter().map(|[used, other]| [used, other]);
-        let all = [[&self.before, &self.own]].into_iter().chain(walls);
+        let before = self.before.as_ref().unwrap_or(&self.rough);
+        let walls = self.other.iter().map(|other| [&self.rough, other]);
+        let all = [[before, &self.own]].into_iter().chain(walls);
         all.map(|pair| pair.map(|own| stacked(own))).collect()
     }
 }

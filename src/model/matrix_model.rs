@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::effort::Effort;
 use super::error::ModelError;
 use super::extent::Occlusion;
-use super::factors::{ElementGrid, Factors, Shares, factors};
+use super::factors::{ElementGrid, Factors, Shares, settled};
 use super::kernel::{HiddenPoint, Kernel};
 use super::obstacles::obstacles;
 use super::wall_point::{self, WallPoint};
@@ -185,10 +185,10 @@ impl MatrixModel {
         let photographs = scene.camera.pixels() as f64 * scene.laser.spots.len() as f64;
         let model = Self::beside(scene, kernel, elements, photographs)?;
         let obstacles = considered(scene, occlusion);
-        let settled = factors(scene, kernel, &obstacles, &model.grids, effort)?;
-        let (factors, shares) = settled.joined();
-        let steps = settled.steps();
-        Ok(model.with_factors((Factors { steps, ..factors }, shares)))
+        let settled = settled(scene, kernel, &obstacles, &model.grids, effort)?;
+        let (mut factors, shares) = settled.joined();
+        factors.steps = settled.steps();
+        Ok(model.with_factors((factors, shares)))
     }
 
     fn beside(
@@ -265,7 +265,7 @@ impl MatrixModel {
         if obstacles.is_empty() {
             return Ok(self);
         }
-        let settled = factors(scene, self.kernel, &obstacles, &self.grids, Effort::USUAL)?;
+        let settled = settled(scene, self.kernel, &obstacles, &self.grids, Effort::USUAL)?;
         Ok(self.with_factors(settled.joined()))
     }
 

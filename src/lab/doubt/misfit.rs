@@ -19,7 +19,7 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
         return Some(contradiction(best));
     }
     let fit = judged.fit.as_ref()?;
-    if let Some(within) = fit.within_integration.filter(|_| fit.fits) {
+    if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
         return Some(format!(
             "whether it fits CANNOT BE TOLD: it differs from the photographs by more than their noise ({}), \
              but by no more than the integrals of the model may be off (with that taken off χ²/dof {}). The \

@@ -65,10 +65,10 @@ impl Linear {
         let light = problem.light(&at.x);
         let factor = |x: f64| (1.0 + x).max(LEAST);
         let whole = factor(at.whole);
-        let by_frame = |m: &DMatrix<f64>, of: &dyn Fn(f64) -> f64| {
+        let by_frame = |m: &DMatrix<f64>, of: &dyn Fn(usize, f64) -> f64| {
             let mut own = m.clone();
-            for (mut column, frame) in own.column_iter_mut().zip(at.frames.iter()) {
-                column *= of(factor(*frame));
+            for (l, mut column) in own.column_iter_mut().enumerate() {
+                column *= of(l, factor(at.frames[l]));
             }
             own
         };
@@ -82,35 +82,25 @@ impl Linear {
             f64::from(u8::from(is_seen(l))) * of_each / factor(at.frames[l])
         });
         let common = at.directions / whole;
-        let frame_mean = -frames.clone() * square(nuisance.frame_gain);
+        let frame_mean = &frames * -square(nuisance.frame_gain);
         let mean = -common * square(nuisance.scale_error);
         // What the linear terms in ε hold at the estimates, less their means.
-        let mut shift = by_frame(&light, &|frame| {
-            (frame - 1.0) * whole + (whole - 1.0 - mean) * frame
+        let shift = by_frame(&light, &|l, frame| {
+            (frame - 1.0 - frame_mean[l]) * whole + (whole - 1.0 - mean) * frame
         });
-        for (l, mut column) in shift.column_iter_mut().enumerate() {
-            column.axpy(-frame_mean[l] * whole, &light.column(l), 1.0);
-        }
-        let log_prior = |by: f64, mean: f64, at: f64| by * (at - 0.5 * mean);
-        let of_frames = frames.iter().zip(&frame_mean).zip(&at.frames);
-        let of_frames = of_frames.map(|((by, mean), at)| log_prior(*by, *mean, *at));
-        let mut all = 0.0;
-        if nuisance.frame_gain.is_some() {
-            all += of_frames.sum::<f64>();
-        }
-        if nuisance.scale_error.is_some() {
-            all += log_prior(common, mean, at.whole);
-        }
+        // Factors that are not asked for stay 0, and so do their means.
+        let log_prior =
+            frames.dot(&(&at.frames - &frame_mean * 0.5)) + common * (at.whole - 0.5 * mean);
         Self {
             phi: problem.phi + shift,
-            d: by_frame(d, &|frame| frame * whole),
+            d: by_frame(d, &|_, frame| frame * whole),
             soft: Soft {
                 frames: nuisance.frame_gain.map(|known| (&light * whole, known)),
                 whole: nuisance.scale_error.map(|known| (&at.x / whole, known)),
                 noise: at.noise,
             },
             means: (frame_mean, mean),
-            log_prior: all,
+            log_prior,
         }
     }
 
