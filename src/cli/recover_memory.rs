@@ -216,8 +216,8 @@ impl Strips<'_> {
             fit: residuals.fit(found.freedom_used(), self.certainty.errors),
             best: None,
             determined: None,
-            errors: Some(self.certainty.errors),
-            replicates: self.certainty.replicates,
+            certainty: Some(self.certainty),
+            moved: None,
         })
     }
 

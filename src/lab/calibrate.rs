@@ -47,7 +47,9 @@ pub use identified::{Direction, Identified};
 pub use profile::Profile;
 
 use super::error::LabError;
+use super::fit::Certainty;
 use super::misplaced::normal;
+use super::pooled::Pooled;
 use super::unexplained::Unexplained;
 use super::validation::Integration;
 use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
@@ -105,12 +107,38 @@ impl CalibrationPlan {
         self.starts as u64 + 1
     }
 
-    /// The geometry of `scene` by these photographs.
+    /// The geometry of `scene` by these photographs; standard errors from few replicates are pooled
+    /// over pixels and spots where these say more.
     ///
     /// # Errors
     /// [`LabError`]: a parameter that is not there or cannot be told, a scene without a model, no
     /// light, or that it was stopped.
     pub fn calibrate(
+        &self,
+        scene: &Scene,
+        photographs: &Unexplained<'_>,
+        control: Control<'_>,
+    ) -> Result<Calibration, LabError> {
+        let known = Certainty {
+            replicates: self.replicates,
+            ..Certainty::STATED
+        };
+        let stderr = photographs.stderr;
+        let pooled = stderr.and_then(|own| Pooled::of(own, known, photographs.left_out));
+        let known = pooled.as_ref().map_or(known, |own| own.certainty);
+        let photographs = Unexplained {
+            stderr: pooled.as_ref().map(|own| &own.stderr).or(stderr),
+            ..*photographs
+        };
+        let own = Self {
+            replicates: known.replicates,
+            ..self.clone()
+        };
+        own.search(scene, &photographs, control)
+    }
+
+    /// From all starts to the estimate.
+    fn search(
         &self,
         scene: &Scene,
         photographs: &Unexplained<'_>,

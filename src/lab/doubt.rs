@@ -1,12 +1,16 @@
 //! What speaks against believing a recovered picture, in words, each with its cure.
 
+mod errors;
 mod misfit;
 
 use super::chosen::beforehand;
 use super::fit::Judged;
 use super::gains::drifting;
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Choice, Method, Patterns, Recovered, Sum, Weighting};
+use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
+use errors::{
+    DETERMINED, HALF, alike_untold, few_replicates, integrated, overstated, shared, undetermined,
+};
 use misfit::misfit;
 
 /// More than this share of the elements is most of them.
@@ -14,26 +18,14 @@ const MOST: f64 = 0.5;
 /// Standard errors by which a reflectance must lie beyond 0 or 1 to be impossible; without a
 /// standard error it must by the whole range.
 const BEYOND: f64 = 3.0;
-/// A standard error above which an element is not known: half of the range from 0 to 1.
-const HALF: f64 = 0.5;
-/// A χ²/dof below this, and as seldom by chance, is not that of independent noise.
-const CLOSE: f64 = 0.95;
-const SELDOM: f64 = 1e-6;
 /// The misfit χ² that an iteration may have left above its minimum: a third of a standard deviation
 /// of one direction.
 const GAP: f64 = 0.1;
 
-/// Replicates from which errors are as good as known: of 10, 95 % bands of `joint-gp` held 84 to
-/// 89 %, of 32 91 to 95 %.
-const ENOUGH_REPLICATES: u32 = 32;
-/// Standard errors larger by more than this are others.
-const LARGER: f64 = 1.1;
 /// A probability below which exactly two reflectances are not to be taken for granted.
 const UNLIKELY: f64 = 0.5;
 /// A probability below which a pattern is one of many.
 const ONE_OF_MANY: f64 = 0.05;
-/// A share of an element below which the photographs do not determine it.
-const DETERMINED: f64 = 0.9;
 
 /// All that speaks against `found`, gravest first; nothing where nothing does.
 pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
@@ -42,6 +34,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         unjudged(found, judged),
         shared(judged),
         few_replicates(found, judged),
+        integrated(judged),
         overstated(judged),
         impossible(found),
         undetermined(found, judged),
@@ -85,79 +78,6 @@ fn unjudged(found: &Recovered, judged: &Judged) -> Option<String> {
             figure(100.0 * found.relative_residual, 2)
         )
     })
-}
-
-/// Errors that do not average out over the entries, as a recovery supposes.
-fn shared(judged: &Judged) -> Option<String> {
-    let which = judged.shared()?;
-    Some(format!(
-        "the errors of these photographs hang together: {which}, and they do not average out. So there \
-         are no standard errors, bands and probabilities, and less is determined than is said. Render \
-         by --estimator independent for them; of dark frames that all spots share take more, or \
-         estimate their part (--background)"
-    ))
-}
-
-/// Errors of the picture that take those of the photographs for known, where they are not.
-fn few_replicates(found: &Recovered, judged: &Judged) -> Option<String> {
-    let replicates = judged.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
-    let stated = found.standard_error.is_some() || found.bands.is_some();
-    (stated && judged.shared().is_none()).then(|| {
-        format!(
-            "the standard errors of the photographs were estimated from {replicates} replicates, and those of \
-             the picture, bands and probabilities take them for known: they are TOO SMALL. Take {ENOUGH_REPLICATES} \
-             replicates or more, or state one error for all that are alike (--noise RELATIVE)"
-        )
-    })
-}
-
-/// Photographs closer to the picture than their errors let them be.
-fn overstated(judged: &Judged) -> Option<String> {
-    let fit = judged.fit.as_ref().filter(|_| judged.shared().is_none())?;
-    (fit.chi2_per_dof < CLOSE && 1.0 - fit.p < SELDOM).then(|| {
-        format!(
-            "it fits BETTER than the standard errors allow (χ²/dof {}): they are too large, or entries \
-             share them, and then the errors of the picture are too small. Of an exposed render take \
-             more --samples",
-            significant(fit.chi2_per_dof, 3)
-        )
-    })
-}
-
-/// Standard errors of a shortest solution that are less than half of what any method can know: they
-/// are those of the directions that the photographs show, and the others are taken for 0.
-fn undetermined(found: &Recovered, judged: &Judged) -> Option<String> {
-    let shortest = matches!(found.method, Method::JointUnbounded | Method::Pinv);
-    let known = judged.determined.as_ref().filter(|_| shortest)?;
-    let stated = found.standard_error.as_ref()?;
-    let shares = known.shares.iter().zip(stated.iter());
-    let hidden = shares.filter(|(share, error)| {
-        **share < DETERMINED && **error < 0.5 * HALF * (1.0 - **share).sqrt()
-    });
-    let count = hidden.count();
-    (count > 0).then(|| {
-        format!(
-            "the photographs do not determine {count} of {} elements, of which this is the smallest picture \
-             that explains them: the standard errors leave out what cannot be seen. Use joint-gp, fewer \
-             --elements, or more photographs",
-            stated.len()
-        )
-    })
-}
-
-/// Standard errors that take neighbours to be as alike as in most pictures, where the photographs
-/// do not say how alike they are.
-fn alike_untold(found: &Recovered) -> Option<String> {
-    let Choice::Averaged { if_unalike } = found.choice else {
-        return None;
-    };
-    let times = if_unalike.filter(|times| *times > LARGER && found.standard_error.is_some())?;
-    Some(format!(
-        "the photographs do not say how alike neighbouring elements are: standard errors and bands take \
-         that from pictures in general. Of elements that have nothing in common with their neighbours \
-         they are {} times as large. Use fewer --elements, or believe them of usual pictures only",
-        significant(times, 2)
-    ))
 }
 
 /// Most elements of a method without bounds where no surface is.

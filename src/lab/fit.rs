@@ -23,6 +23,7 @@
 //! evidence against it.
 
 mod attainable;
+mod integrated;
 
 use serde::Serialize;
 
@@ -49,8 +50,11 @@ const MOST_DECOMPOSED: usize = 2048;
 pub struct Certainty {
     /// How the errors of the entries hang together.
     pub errors: Errors,
-    /// Replicates from which each was estimated; none where they are known.
+    /// Replicates from which each was estimated, or as from which it is known; none where they are
+    /// known.
     pub replicates: Option<u32>,
+    /// Whether those of pixels and spots were pooled.
+    pub is_pooled: bool,
 }
 
 impl Certainty {
@@ -58,6 +62,7 @@ impl Certainty {
     pub const STATED: Self = Self {
         errors: Errors::Independent,
         replicates: None,
+        is_pooled: false,
     };
 
     /// What a render leaves.
@@ -65,6 +70,7 @@ impl Certainty {
         Self {
             errors: Errors::of(plan.estimator),
             replicates: Some(plan.budget.blocks),
+            ..Self::STATED
         }
     }
 }
@@ -89,6 +95,10 @@ pub struct Fit {
     /// χ²/(N − ν) less what the integrals of the model may be off by; none where the picture fits
     /// without, or nothing is known of them.
     pub within_integration: Option<f64>,
+    /// Replicates as from which the standard errors are known, where those of few were pooled over
+    /// pixels and spots; absent where none were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pooled: Option<u32>,
 }
 
 impl Fit {
@@ -164,6 +174,7 @@ impl Residuals {
             level: FIT_LEVEL,
             fits: p >= FIT_LEVEL,
             within_integration: None,
+            pooled: None,
         })
     }
 }
@@ -180,7 +191,10 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
     let of = |seen: &Matrix| {
         let mut residuals = Residuals::default();
         residuals.add(phi, seen, &stderr, certainty);
-        residuals.fit(found.freedom_used(), certainty.errors)
+        Some(Fit {
+            pooled: certainty.replicates.filter(|_| certainty.is_pooled),
+            ..residuals.fit(found.freedom_used(), certainty.errors)?
+        })
     };
     let seen = found.photographs(problem);
     let fit = of(&seen)?;
@@ -213,16 +227,17 @@ pub struct Judged {
     pub best: Option<Attainable>,
     /// What the photographs determine of each element, where it is known.
     pub determined: Option<Determined>,
-    /// How the errors of the photographs hang together; none where they are not known.
-    pub errors: Option<Errors>,
-    /// Replicates from which they were estimated; none where their size is known.
-    pub replicates: Option<u32>,
+    /// What is known of the errors of the photographs; none where they are not.
+    pub certainty: Option<Certainty>,
+    /// How far the integrals of the model may move an element, in its standard errors; none where
+    /// that is not known.
+    pub moved: Option<f64>,
 }
 
 impl Judged {
     /// Which entries share their errors, in words.
     pub(super) fn shared(&self) -> Option<&'static str> {
-        self.errors.and_then(Errors::shared)
+        self.certainty.and_then(|known| known.errors.shared())
     }
 
     /// What holds for every method: the best of all that was `found` and can be found, and what the
@@ -245,17 +260,17 @@ impl Judged {
                 .filter(|_| !found.is_empty())
                 .and_then(|noise| Attainable::of(problem, noise, found, options)),
             determined: few.then(|| determined(problem).ok()).flatten(),
-            errors: noise.map(|known| known.certainty.errors),
-            replicates: noise.and_then(|known| known.certainty.replicates),
+            certainty: noise.map(|known| known.certainty),
+            moved: None,
         }
     }
 
-    /// The same with the fit of `found`.
+    /// The same with the fit of `found`, which was recovered with these options.
     pub(super) fn of(
         &self,
         problem: &Problem<'_>,
         noise: Option<Known<'_>>,
-        found: &Recovered,
+        (found, options): (&Recovered, &Options),
     ) -> Self {
         let two_valued = found.method == Method::JointTwoValued;
         let left_over = self.left_over.filter(|_| two_valued);
@@ -264,6 +279,7 @@ impl Judged {
                 Some(noise) => fit(problem, noise, found),
                 None => left_over.and_then(|any| any.refutes(problem, found)),
             },
+            moved: noise.and_then(|noise| integrated::moved(problem, noise, found, options)),
             ..self.clone()
         }
     }

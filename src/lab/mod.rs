@@ -185,6 +185,7 @@ mod picard;
 #[cfg(test)]
 mod pictures;
 mod pilot;
+mod pooled;
 mod power;
 mod preview;
 mod problem;

@@ -11,6 +11,7 @@ use super::doubt::doubts;
 use super::fit::{Certainty, Judged, Known};
 use super::likelier::likelier;
 use super::measures::Measures;
+use super::pooled::Pooled;
 use super::problem::problem;
 use super::study::Work;
 use crate::matrix::Matrix;
@@ -32,6 +33,21 @@ pub enum Noise<'a> {
 }
 
 impl<'a> Noise<'a> {
+    /// Standard errors from few replicates, pooled as far as they may be.
+    fn pooled(self, nuisance: Nuisance<'_>) -> Option<Pooled> {
+        match self {
+            Self::StandardError(stderr, certainty) => {
+                Pooled::of(stderr, certainty, nuisance.left_out)
+            }
+            Self::Unknown => None,
+        }
+    }
+
+    /// These in place of the estimates of single entries.
+    fn or(self, pooled: Option<&'a Pooled>) -> Self {
+        pooled.map_or(self, |own| Self::StandardError(&own.stderr, own.certainty))
+    }
+
     fn known(self, model: &'a MatrixModel) -> Option<Known<'a>> {
         match self {
             Self::StandardError(stderr, certainty) => Some(Known {
@@ -55,7 +71,8 @@ pub struct Attempt {
 
 /// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and
 /// measures it against the true albedo at the element centres. `nuisance` is what else the
-/// photographs hold. Methods that are not finished when `control` stops it are
+/// photographs hold. Standard errors from few replicates are pooled over pixels and spots where
+/// these say more. Methods that are not finished when `control` stops it are
 /// [`RecoveryError::Stopped`].
 pub fn recover_objects(
     model: &MatrixModel,
@@ -66,6 +83,8 @@ pub fn recover_objects(
     options: &Options,
     control: Control<'_>,
 ) -> Vec<Attempt> {
+    let pooled = noise.pooled(nuisance);
+    let noise = noise.or(pooled.as_ref());
     let (grids, shared) = (counts(model), Shared::default());
     let problem = ready(model, phi, noise, nuisance, &grids, &shared);
     attempts(model, &problem, noise, methods, options, control)
@@ -87,6 +106,8 @@ pub fn recover_with_picards(
     options: &Options,
     control: Control<'_>,
 ) -> (Vec<Attempt>, Result<Vec<Picard>, RecoveryError>) {
+    let pooled = noise.pooled(nuisance);
+    let noise = noise.or(pooled.as_ref());
     let (grids, shared) = (counts(model), Shared::default());
     let problem = ready(model, phi, noise, nuisance, &grids, &shared);
     let attempts = attempts(model, &problem, noise, methods, options, control);
@@ -154,7 +175,7 @@ fn attempts(
     let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
     let first = likelier(&all).filter(|_| explained && any.shared().is_none());
     let judged = |found: Recovered| {
-        let mut objects = measured(model, &found, &any.of(problem, known, &found));
+        let mut objects = measured(model, &found, &any.of(problem, known, (&found, options)));
         let own = first.as_ref().filter(|(method, _)| *method == found.method);
         let words = own.map(|(_, words)| words.clone());
         objects

@@ -129,9 +129,20 @@ pub fn fits(group: &[&RecoveredObject]) -> Table {
             Column::number("P", "", "", 2),
         ],
         rows: group.iter().map(row).collect(),
-        note: likelier(group) + &determined(group.get(..1).unwrap_or_default()),
+        note: pooled(group) + &likelier(group) + &determined(group.get(..1).unwrap_or_default()),
         ..Table::default()
     }
+}
+
+/// That standard errors were pooled, where they were.
+fn pooled(group: &[&RecoveredObject]) -> String {
+    let replicates = group.iter().find_map(|r| r.fit.as_ref()?.pooled);
+    replicates.map_or(String::new(), |n| {
+        format!(
+            "Standard errors from few replicates were pooled over pixels and spots: they are known as \
+             from {n}. "
+        )
+    })
 }
 
 /// Under which assumption the photographs are likelier, where two were tried.

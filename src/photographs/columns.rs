@@ -3,6 +3,7 @@
 use super::correct::{Correction, Flat};
 use super::error::{PhotographError, refused};
 use super::footprints::Footprints;
+use super::highest::Highest;
 use super::left_out::{DEAD, HALO, MISSING, OUTSIDE, SATURATED, in_halo};
 use super::noise::CameraNoise;
 use super::placing::Placing;
@@ -23,6 +24,7 @@ pub(super) struct Columns {
     pub gains: Vec<(usize, f64, f64)>,
     pub photographs: usize,
     pub zeros: f64,
+    pub highest: Highest,
     /// Part of the variance that is that of the dark frames, mean over the entries.
     pub common: f64,
     /// Part of the variance that is that of the flat field, mean over the entries.
@@ -57,6 +59,7 @@ impl Columns {
             gains: Vec::new(),
             photographs: 0,
             zeros: 0.0,
+            highest: Highest::default(),
             common: 0.0,
             of_flat: 0.0,
         };
@@ -78,6 +81,7 @@ impl Columns {
             let corrected = correction.apply(&name, &mean)?;
             found.photographs += mean.frames;
             found.zeros += mean.cut_off();
+            found.highest = found.highest.with(mean.highest);
             found.common += corrected.common;
             found.of_flat += corrected.of_flat;
             seen += 1;

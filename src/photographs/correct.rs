@@ -148,6 +148,7 @@ impl Correction<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::highest::Highest;
     use super::super::plane::Plane;
     use super::*;
 
@@ -159,6 +160,7 @@ mod tests {
             saturated: light.iter().map(|x| *x >= 1000.0).collect(),
             share: 1.0,
             zeros: 0,
+            highest: Highest::default(),
         })
     }
 

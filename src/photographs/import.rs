@@ -94,6 +94,12 @@ pub fn import(
             100.0 * columns.zeros / all as f64
         ));
     }
+    warnings.extend(
+        columns
+            .highest
+            .clipped()
+            .filter(|_| set.saturation.is_none()),
+    );
     let Placing {
         fitted, mapping, ..
     } = placing;

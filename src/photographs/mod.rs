@@ -25,6 +25,7 @@ mod columns;
 mod correct;
 mod error;
 mod footprints;
+mod highest;
 mod import;
 pub mod left_out;
 mod lens;

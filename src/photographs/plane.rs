@@ -1,6 +1,7 @@
 //! One channel of photographs as light, and the average of repeated ones.
 
 use super::error::{PhotographError, refused};
+use super::highest::Highest;
 use super::response::Response;
 use crate::image::{Channel, Samples};
 
@@ -31,6 +32,8 @@ pub struct Plane {
     pub share: f64,
     /// Stored values that are 0, in any of the channels: cut off below.
     pub zeros: usize,
+    /// The largest stored integer below saturation.
+    pub highest: Highest,
 }
 
 /// The chosen channel of `samples` as light. Stored values from `saturation` on are saturated.
@@ -66,6 +69,7 @@ pub fn linearised(
         saturated: vec![false; pixels],
         share,
         zeros: 0,
+        highest: Highest::default(),
     };
     let step = if samples.full_scale.is_some() {
         1.0
@@ -90,6 +94,10 @@ pub fn linearised(
             plane.rounding[k] += rounded * rounded / 12.0;
             plane.saturated[k] |= *s >= saturation;
             plane.zeros += usize::from(*s == 0.0 && step > 0.0);
+            if step > 0.0 && *s < saturation {
+                let (value, times) = (*s, 1);
+                plane.highest = plane.highest.with(Highest { value, times });
+            }
         }
     }
     Ok(plane)
@@ -112,6 +120,8 @@ pub struct Averaged {
     pub share: f64,
     /// Stored values that were 0.
     pub zeros: usize,
+    /// The largest stored integer below saturation.
+    pub highest: Highest,
     squares: Vec<f64>,
 }
 
@@ -127,6 +137,7 @@ impl Averaged {
             saturated: first.saturated,
             share: first.share,
             zeros: first.zeros,
+            highest: first.highest,
         }
     }
 
@@ -138,6 +149,7 @@ impl Averaged {
         same_size(name, next.size, self.size)?;
         self.frames += 1;
         self.zeros += next.zeros;
+        self.highest = self.highest.with(next.highest);
         let n = self.frames as f64;
         self.share += (next.share - self.share) / n;
         for k in 0..self.light.len() {

@@ -134,6 +134,15 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same of other photographs, of the same shape; operators are not shared with it.
+    pub fn photographing(self, phi: &'a DMatrix<f64>) -> Self {
+        Problem {
+            phi,
+            shared: None,
+            ..self
+        }
+    }
+
     /// Φ, pixels × spots, W.
     pub fn photographed(&self) -> &'a DMatrix<f64> {
         self.phi

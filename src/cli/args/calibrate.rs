@@ -19,7 +19,8 @@ pub(in crate::cli) struct CalibrateArgs {
     /// Its standard errors; without them its noise is unknown
     #[arg(long, value_name = "FILE", requires = "phi")]
     pub stderr: Option<PathBuf>,
-    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    /// Replicates from which --stderr was estimated, at least 2; those of fewer than 32 are pooled
+    /// over pixels and spots where these say more. Known errors unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "stderr")]
     pub replicates: Option<u32>,
     /// Folder for the results; DIR/calibrated unless given

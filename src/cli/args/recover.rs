@@ -33,7 +33,8 @@ pub(in crate::cli) struct RecoverArgs {
     /// Its standard error, in place of DIR/phi.stderr.npy
     #[arg(long, value_name = "FILE", conflicts_with = "noise")]
     pub stderr: Option<PathBuf>,
-    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    /// Replicates from which --stderr was estimated, at least 2; those of fewer than 32 are pooled
+    /// over pixels and spots where these say more. Known errors unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "stderr")]
     pub replicates: Option<u32>,
     /// Noise model: standard deviation of each entry relative to its value, in place of a standard

@@ -56,6 +56,9 @@ pub struct Calibration {
     pub is_integrated: bool,
     /// Combinations that the photographs alone do not tell.
     pub untold: Vec<Direction>,
+    /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
+    /// are few; absent where it is known or not stated.
+    pub replicates: Option<u32>,
     /// Estimated noise over the stated one (1 where it is stated), or W.
     pub noise: f64,
     /// χ² over degrees of freedom at that noise.

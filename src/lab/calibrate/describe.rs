@@ -5,6 +5,7 @@ mod tables;
 
 use super::{Calibrated, Calibration};
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
+use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::{figure, perhaps};
 use crate::recovery::ErrorField;
@@ -161,6 +162,15 @@ impl Calibration {
         }
     }
 
+    /// That the stated noise is an estimate, where that matters.
+    fn few_replicates(&self) -> Option<String> {
+        let few = self.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
+        Some(format!(
+            "The stated noise is known as from {few} replicates, pooled over pixels and spots as far as \
+             they say more, and the errors take it for known: they are TOO SMALL. Take more."
+        ))
+    }
+
     fn searched(&self) -> String {
         let starts = match self.starts.tried {
             1 => "One start was tried: whether others end elsewhere is not known (--starts)."
@@ -215,7 +225,9 @@ impl Calibration {
     }
 
     fn notes(&self) -> Vec<String> {
-        let mut notes = vec![self.fit(), self.searched(), self.picture()];
+        let mut notes = vec![self.fit()];
+        notes.extend(self.few_replicates());
+        notes.extend([self.searched(), self.picture()]);
         let far = self.geometry().filter_map(|f| {
             let prior = f.prior?;
             (f.value.abs() > FAR * prior)

@@ -129,6 +129,7 @@ impl CalibrationPlan {
             scene_hash: scene.hash.clone(),
             is_integrated,
             untold,
+            replicates: self.replicates.filter(|_| is_noise_known),
             noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
             field: field.as_ref().map(|f| f.errors),
             log_likelier: field.as_ref().map(|_| alone - total),

@@ -6,6 +6,7 @@ use nalgebra::DVector;
 use super::picture::{Prior, priors};
 use super::*;
 use crate::lab::finding::Describe;
+use crate::lab::pooled::tests::repeated;
 use crate::matrix::Matrix;
 use crate::model::{Extent, converged};
 use crate::num::cosines::from_cosines;
@@ -491,6 +492,41 @@ fn estimated_errors_are_expected_to_scatter() {
     assert!((25..=100).contains(&below), "{below}");
     let known = plan(&["hinge.angle"], 2);
     assert!(known.by_noise(1.4 * 400.0, 400.0) < 1e-6);
+}
+
+/// Three photographs of each spot: over 40 draws the hinge is off by its stated error, √χ²/n within
+/// four of its standard errors 1/√(2n), and the photographs are not refuted, as they are where each
+/// error is taken for known.
+#[test]
+fn errors_of_three_replicates_are_pooled() {
+    let scene = small("bench", 12);
+    let names = ["hinge.angle"];
+    let parameters = Parameter::named(&scene, names[0]).unwrap();
+    let there = scene.displaced(&parameters, &[0.5]).unwrap();
+    let (exact, sigma) = photographs(&there, 2, 0.0, 0);
+    let sigma = sigma.map(|_| 0.01 * exact.mean());
+    let pooled = CalibrationPlan {
+        replicates: Some(3),
+        ..plan(&names, 2)
+    };
+    let known = plan(&names, 2);
+    let draws = 40;
+    let mut squares = [0.0; 2];
+    let mut refuted = [0; 2];
+    for seed in 0..draws {
+        let [phi, stderr] = repeated(&exact, &sigma, 3, 50 + seed);
+        for (k, plan) in [&pooled, &known].into_iter().enumerate() {
+            let found = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+            let found = found.unwrap();
+            let own = &found.found[0];
+            squares[k] += ((own.value - 0.5) / own.by_curvature).powi(2);
+            refuted[k] += u32::from(found.p.unwrap() < 1e-3);
+        }
+    }
+    let [pooled, known] = squares.map(|sum| (sum / draws as f64).sqrt());
+    let most = 1.0 + 4.0 / (2.0 * draws as f64).sqrt();
+    assert!(pooled < most && refuted[0] == 0, "{pooled} {refuted:?}");
+    assert!(known > most && refuted[1] > 30, "{known} {refuted:?}");
 }
 
 /// Photographs of a hinge that is wrong, with a drawn field of errors of a fifteenth of the light

@@ -3,8 +3,10 @@ use crate::lab::ensemble::Photographs;
 use crate::lab::misplaced::normal;
 use crate::lab::problem::problem;
 use crate::lab::study::tests::small;
+use crate::lab::{Noise, recover_objects};
 use crate::model::{Effort, Extent, Kernel, MatrixModel, Occlusion, converged};
-use crate::recovery::recover;
+use crate::num::control::Control;
+use crate::recovery::{Nuisance, recover};
 use crate::scene::Scene;
 
 fn known<'a>(stderr: &'a Matrix, factors: Option<&'a Factors>) -> Known<'a> {
@@ -102,6 +104,7 @@ fn shared_errors_count_once() {
             let certainty = Certainty {
                 errors,
                 replicates: None,
+                ..Certainty::STATED
             };
             let mut residuals = Residuals::default();
             residuals.add(&phi, &none, &stderr, certainty);
@@ -118,6 +121,7 @@ fn errors_from_few_replicates_are_students() {
     let certainty = Certainty {
         errors: Errors::Independent,
         replicates: Some(8),
+        ..Certainty::STATED
     };
     let (rows, columns) = (100, 60);
     let draws: Vec<Matrix> = (0..8)
@@ -171,10 +175,27 @@ fn two_levels_are_held_against_any_where_the_noise_is_not_known() {
             let options = Options::default();
             let found = recover(Method::JointTwoValued, &problem, &options).unwrap();
             let judged = Judged::any(&problem, None, &[&found], &options);
-            let fit = judged.of(&problem, None, &found).fit;
+            let fit = judged.of(&problem, None, (&found, &options)).fit;
             assert_eq!(fit.is_some_and(|fit| !fit.fits), refuted, "seed {seed}");
         }
     }
+}
+
+/// A plate close to the wall, at `place`, before few elements, pixels and spots.
+fn plate(place: &str) -> Scene {
+    let text = Scene::load("periscope").unwrap().text;
+    let text = text
+        .replacen("pixels = [32, 32]", "pixels = [6, 6]", 1)
+        .replacen("per_side = 25", "per_side = 4", 1)
+        .replacen("elements = [8, 8]", "elements = [4, 4]", 1)
+        .replacen(
+            "[8, 8], dark = 0.0, light = 1.0",
+            "[4, 4], dark = 0.2, light = 0.8",
+            1,
+        )
+        .replacen("[4.44, 5.9, 2.0]", place, 1);
+    assert!(text.contains(place) && text.contains("dark = 0.2"));
+    Scene::from_toml("near", &text).unwrap()
 }
 
 /// Photographs past a plate near the wall, by another rule ([`converged`]), with noise that is less
@@ -182,22 +203,7 @@ fn two_levels_are_held_against_any_where_the_noise_is_not_known() {
 /// with what the last steps move; with the plate elsewhere refuted all the same.
 #[test]
 fn what_integrals_leave_over_is_no_evidence() {
-    let scene = |place: &str| {
-        let text = Scene::load("periscope").unwrap().text;
-        let text = text
-            .replacen("pixels = [32, 32]", "pixels = [6, 6]", 1)
-            .replacen("per_side = 25", "per_side = 4", 1)
-            .replacen("elements = [8, 8]", "elements = [4, 4]", 1)
-            .replacen(
-                "[8, 8], dark = 0.0, light = 1.0",
-                "[4, 4], dark = 0.2, light = 0.8",
-                1,
-            )
-            .replacen("[4.44, 5.9, 2.0]", place, 1);
-        assert!(text.contains(place) && text.contains("dark = 0.2"));
-        Scene::from_toml("near", &text).unwrap()
-    };
-    let near = scene("[4.0, 4.0, 0.2]");
+    let near = plate("[4.0, 4.0, 0.2]");
     let clean = converged(&near, Kernel::Physical, Extent::FULL)
         .unwrap()
         .phi;
@@ -221,9 +227,52 @@ fn what_integrals_leave_over_is_no_evidence() {
         "{open:?}"
     );
     assert_eq!((open.p, open.chi2_per_dof), (bare.p, bare.chi2_per_dof));
-    let wrong = judged(&scene("[4.1, 4.0, 0.2]"), true);
+    let wrong = judged(&plate("[4.1, 4.0, 0.2]"), true);
     assert!(
         !wrong.fits && wrong.within_integration.unwrap() > 3.0,
         "{wrong:?}"
     );
+}
+
+/// The picture of photographs without noise, by another rule, is off by what the integrals are off:
+/// by no more than twice what their last steps move it, in units of the errors of any noise; that
+/// is told where it is not much less than these.
+#[test]
+fn what_integrals_move_is_told_in_standard_errors() {
+    let near = plate("[4.0, 4.0, 0.2]");
+    let clean = converged(&near, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi;
+    let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
+    let model = MatrixModel::over_areas(&near, kernel, None, occlusion, Effort::USUAL).unwrap();
+    let options = Options::default();
+    let methods = [Method::JointUnbounded];
+    for (noise, is_told) in [(2e-4, true), (1e-2, false)] {
+        let stderr = clean.map(|x| noise * (x + 0.03 * clean.mean()));
+        let found = recover_objects(
+            &model,
+            &clean,
+            Noise::StandardError(&stderr, Certainty::STATED),
+            Nuisance::default(),
+            &methods,
+            &options,
+            Control::none(),
+        );
+        let found = &found[0].outcome.as_ref().unwrap()[0];
+        let each = found.reflectance.iter().zip(&model.albedo);
+        let each = each.zip(found.standard_error.as_ref().unwrap());
+        let off = each.map(|((x, truth), error)| (x - truth).abs() / error);
+        let off = off.fold(0.0, f64::max);
+        let problem = problem(&model, &clean, Some(&stderr)).unwrap();
+        let own = recover(methods[0], &problem, &options).unwrap();
+        let known = known(&stderr, model.factors.as_ref());
+        let moved = integrated::moved(&problem, known, &own, &options).unwrap();
+        assert!(
+            moved < 3.0 * off && off < 2.0 * moved,
+            "{noise}: {moved} {off}"
+        );
+        let told = found.warnings.iter();
+        let told = told.filter(|w| w.contains("the integrals of the model may be off by"));
+        assert_eq!(told.count() > 0, is_told, "{noise}: {:?}", found.warnings);
+    }
 }

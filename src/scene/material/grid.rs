@@ -1,6 +1,9 @@
 //! Measured BRDFs as text: one line for each pair of directions.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use crate::geometry::DVec3;
+use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
 
 /// An isotropic BRDF over the polar angles of both directions and the angle between their azimuths.
@@ -71,7 +74,28 @@ impl Axis {
         }
         (k, k + 1, (x - nodes[k]) / (nodes[k + 1] - nodes[k]))
     }
+
+    /// What each node contributes to the integral of `density` times a function that is linear
+    /// between them and constant beyond, from 0 to `end`.
+    fn weights(&self, end: f64, density: impl Fn(f64) -> f64) -> Vec<f64> {
+        let rule = Rule::gauss_legendre(PER_INTERVAL);
+        let (nodes, last) = (&self.nodes, self.nodes.len() - 1);
+        let mut weights = vec![0.0; nodes.len()];
+        let ends = [(0.0, nodes[0]), (nodes[last], end)];
+        let between = nodes.windows(2).map(|pair| (pair[0], pair[1]));
+        for (a, b) in between.chain(ends).filter(|(a, b)| a < b) {
+            for (x, w) in rule.on(a, b) {
+                let (first, second, share) = self.between(x);
+                weights[first] += w * density(x) * (1.0 - share);
+                weights[second] += w * density(x) * share;
+            }
+        }
+        weights
+    }
 }
+
+/// Nodes of an interval: exact to rounding for sinθ cosθ over a right angle.
+const PER_INTERVAL: usize = 16;
 
 /// A line of the file: its number, three angles in degrees and the value.
 struct Line {
@@ -159,6 +183,24 @@ impl Grid {
             phi: Axis::new(&phi),
             values,
         })
+    }
+
+    /// Each polar angle of the table, degrees, and the share ∫ f_r cosθ dω of the light from there
+    /// that is reflected, to rounding. Between the angles it is linear: the largest is one of
+    /// these.
+    pub(super) fn albedos(&self) -> Vec<[f64; 2]> {
+        let polar = self
+            .theta
+            .weights(FRAC_PI_2, |t| libm::sin(t) * libm::cos(t));
+        let azimuth = self.phi.weights(PI, |_| 2.0);
+        let (nt, np) = (polar.len(), azimuth.len());
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let of = |(i, theta): (usize, &f64)| {
+            let rows = self.values[np * nt * i..][..np * nt].chunks(np);
+            let along: Vec<f64> = rows.map(|row| dot(row, &azimuth)).collect();
+            [theta.to_degrees(), dot(&along, &polar)]
+        };
+        self.theta.nodes.iter().enumerate().map(of).collect()
     }
 
     /// f_r of directions above the surface, sr⁻¹.

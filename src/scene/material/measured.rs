@@ -14,8 +14,9 @@ use crate::store::digest_of;
 /// database, or, where the file's name ends in `.csv`, text with the header
 /// `theta_i,theta_o,phi,value`. The texture's value multiplies it.
 ///
-/// A table that reflects more than it receives is refused: its directional albedo is taken at 36
-/// angles of incidence, 0° to 87.5°.
+/// A table that reflects more than it receives is refused: its directional albedo is taken at all
+/// polar angles of a text, between which it is linear, and every half degree of a MERL table, whose
+/// entries are a degree wide.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     table: Table,
@@ -31,7 +32,7 @@ enum Table {
 
 /// What quadrature and rounding may add to a reflectance of 1.
 const ALLOWANCE: f64 = 1e-3;
-const INCIDENCES: u32 = 36;
+const INCIDENCES: u32 = 180;
 const NODES: usize = 32;
 /// Roughnesses and shares from which the lobe is chosen, over the cosines of these exitant
 /// directions, with so many nodes.
@@ -113,19 +114,27 @@ impl Measured {
         best
     }
 
-    fn refuse_gain(&self, largest: f64) -> Result<(), Fault> {
+    /// Angles of incidence, degrees, and the share of the light from there that is reflected, by
+    /// quadrature.
+    fn albedos(&self) -> Vec<[f64; 2]> {
         let rule = Rule::gauss_legendre(NODES);
-        let mut worst = (0.0, 0.0);
-        for k in 0..INCIDENCES {
-            let degrees = 2.5 * f64::from(k);
+        let of = |k: u32| {
+            let degrees = 90.0 / f64::from(INCIDENCES) * f64::from(k);
             let (sin, cos) = libm::sincos(degrees.to_radians());
             let wi = DVec3::new(sin, 0.0, cos);
             let reflected = self.lobe.integral(wi, &rule, |w, _| self.brdf(wi, w) * w.z);
-            if reflected > worst.0 {
-                worst = (reflected, degrees);
-            }
-        }
-        let (reflected, degrees) = worst;
+            [degrees, reflected]
+        };
+        (0..INCIDENCES).map(of).collect()
+    }
+
+    fn refuse_gain(&self, largest: f64) -> Result<(), Fault> {
+        let albedos = match &self.table {
+            Table::Grid(table) => table.albedos(),
+            Table::Merl(_) => self.albedos(),
+        };
+        let worst = albedos.into_iter().max_by(|a, b| a[1].total_cmp(&b[1]));
+        let [degrees, reflected] = worst.unwrap_or_default();
         if reflected * largest <= 1.0 + ALLOWANCE {
             return Ok(());
         }

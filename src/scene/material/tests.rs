@@ -295,6 +295,20 @@ fn wrong_tables_are_refused_with_a_cure() {
         "{error}"
     );
     assert!(material("{ measured = \"a.csv\", scale = 0.8 }", bright.as_bytes()).is_ok());
+    // A peak of half a degree: 2π ∫ of its hat sinθ cosθ dθ = 2π (1.25°)(0.25°) = 5.98e-4 to 1e-3
+    // of it.
+    let peak = |value: f64| {
+        let near = |x: f64| (x.to_degrees() - 1.25).abs() < 1e-9;
+        let f = |i: f64, o: f64, _: f64| if near(i) && near(o) { value } else { 0.0 };
+        let text = grid::tests::written(&[0.0, 1.0, 1.25, 1.5, 90.0], &[0.0], f);
+        material("{ measured = \"a.csv\" }", text.as_bytes())
+    };
+    let error = peak(2000.0).unwrap_err();
+    assert!(
+        error.contains("reflects 1.19") && error.contains("1.25°"),
+        "{error}"
+    );
+    assert!(peak(1600.0).is_ok());
 }
 
 /// θ_i, θ_o and φ in degrees as directions.

@@ -53,6 +53,31 @@ fn beyond_the_outermost_angles_it_is_constant() {
     }
 }
 
+/// f_r = 0.3/π reflects 0.3 from everywhere; θ_i + θ_o, linear in both, 2π (θ_i/2 + π/8):
+/// ∫ θ sinθ cosθ dθ over a right angle is π/8. So does a table that leaves out the outermost angles
+/// of a constant.
+#[test]
+fn what_is_reflected_is_the_closed_form() {
+    let near = |theta: &[f64], phi: &[f64], f: fn(f64, f64, f64) -> f64, share: fn(f64) -> f64| {
+        let grid = Grid::read(written(theta, phi, f).as_bytes()).unwrap();
+        let found = grid.albedos();
+        assert_eq!(found.len(), theta.len());
+        for ([degrees, found], theta) in found.into_iter().zip(theta) {
+            let exact = share(theta.to_radians());
+            assert!((degrees - theta).abs() < 1e-12);
+            assert!((found - exact).abs() < 1e-9, "{theta}: {found} {exact}");
+        }
+    };
+    near(&THETA, &PHI, |_, _, _| 0.3 / PI, |_| 0.3);
+    near(&[10.0, 40.0], &[20.0, 50.0], |_, _, _| 0.3 / PI, |_| 0.3);
+    near(
+        &THETA,
+        &PHI,
+        |i, o, _| i + o,
+        |i| 2.0 * PI * (0.5 * i + PI / 8.0),
+    );
+}
+
 #[test]
 fn small_differences_between_exchanged_directions_are_averaged() {
     let f = |i: f64, o: f64, _: f64| if i > o { 0.204 } else { 0.2 };

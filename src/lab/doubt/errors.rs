@@ -1,0 +1,111 @@
+//! Standard errors, bands and probabilities that say less than they seem to.
+
+use crate::lab::fit::Judged;
+use crate::lab::pooled::ENOUGH_REPLICATES;
+use crate::num::digits::{figure, significant};
+use crate::recovery::{Choice, Method, Recovered};
+
+/// A standard error above which an element is not known: half of the range from 0 to 1.
+pub(super) const HALF: f64 = 0.5;
+/// A share of an element below which the photographs do not determine it.
+pub(super) const DETERMINED: f64 = 0.9;
+/// A χ²/dof below this, and as seldom by chance, is not that of independent noise.
+const CLOSE: f64 = 0.95;
+const SELDOM: f64 = 1e-6;
+/// What the integrals move is told from this part of a standard error on.
+const NOTABLE: f64 = 0.5;
+/// Standard errors larger by more than this are others.
+const LARGER: f64 = 1.1;
+
+/// Errors that do not average out over the entries, as a recovery supposes.
+pub(super) fn shared(judged: &Judged) -> Option<String> {
+    let which = judged.shared()?;
+    Some(format!(
+        "the errors of these photographs hang together: {which}, and they do not average out. So there \
+         are no standard errors, bands and probabilities, and less is determined than is said. Render \
+         by --estimator independent for them; of dark frames that all spots share take more, or \
+         estimate their part (--background)"
+    ))
+}
+
+/// Errors of the picture that take those of the photographs for known, where they are not.
+pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<String> {
+    let known = judged.certainty?;
+    let replicates = known.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
+    let estimated = if known.is_pooled {
+        "even pooled over pixels and spots, are known as"
+    } else {
+        "were estimated"
+    };
+    let stated = found.standard_error.is_some() || found.bands.is_some();
+    (stated && judged.shared().is_none()).then(|| {
+        format!(
+            "the standard errors of the photographs {estimated} from {replicates} replicates, and those of \
+             the picture, bands and probabilities take them for known: they are TOO SMALL. Take {ENOUGH_REPLICATES} \
+             replicates or more, or state one error for all that are alike (--noise RELATIVE)"
+        )
+    })
+}
+
+/// Errors of the picture that know of noise alone, where the model's integrals move it as much.
+pub(super) fn integrated(judged: &Judged) -> Option<String> {
+    let fits = judged
+        .fit
+        .as_ref()
+        .is_some_and(|fit| fit.fits && !fit.is_open());
+    let moved = judged.moved.filter(|moved| *moved > NOTABLE && fits)?;
+    Some(format!(
+        "what the integrals of the model may be off by moves an element by up to {} standard errors, which \
+         know of noise alone: they are TOO SMALL. More --elements are integrated more finely",
+        figure(moved, 2)
+    ))
+}
+
+/// Photographs closer to the picture than their errors let them be.
+pub(super) fn overstated(judged: &Judged) -> Option<String> {
+    let fit = judged.fit.as_ref().filter(|_| judged.shared().is_none())?;
+    (fit.chi2_per_dof < CLOSE && 1.0 - fit.p < SELDOM).then(|| {
+        format!(
+            "it fits BETTER than the standard errors allow (χ²/dof {}): they are too large, or entries \
+             share them, and then the errors of the picture are too small. Of an exposed render take \
+             more --samples",
+            significant(fit.chi2_per_dof, 3)
+        )
+    })
+}
+
+/// Standard errors of a shortest solution that are less than half of what any method can know: they
+/// are those of the directions that the photographs show, and the others are taken for 0.
+pub(super) fn undetermined(found: &Recovered, judged: &Judged) -> Option<String> {
+    let shortest = matches!(found.method, Method::JointUnbounded | Method::Pinv);
+    let known = judged.determined.as_ref().filter(|_| shortest)?;
+    let stated = found.standard_error.as_ref()?;
+    let shares = known.shares.iter().zip(stated.iter());
+    let hidden = shares.filter(|(share, error)| {
+        **share < DETERMINED && **error < 0.5 * HALF * (1.0 - **share).sqrt()
+    });
+    let count = hidden.count();
+    (count > 0).then(|| {
+        format!(
+            "the photographs do not determine {count} of {} elements, of which this is the smallest picture \
+             that explains them: the standard errors leave out what cannot be seen. Use joint-gp, fewer \
+             --elements, or more photographs",
+            stated.len()
+        )
+    })
+}
+
+/// Standard errors that take neighbours to be as alike as in most pictures, where the photographs
+/// do not say how alike they are.
+pub(super) fn alike_untold(found: &Recovered) -> Option<String> {
+    let Choice::Averaged { if_unalike } = found.choice else {
+        return None;
+    };
+    let times = if_unalike.filter(|times| *times > LARGER && found.standard_error.is_some())?;
+    Some(format!(
+        "the photographs do not say how alike neighbouring elements are: standard errors and bands take \
+         that from pictures in general. Of elements that have nothing in common with their neighbours \
+         they are {} times as large. Use fewer --elements, or believe them of usual pictures only",
+        significant(times, 2)
+    ))
+}
