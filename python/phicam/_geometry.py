@@ -116,7 +116,7 @@ def calibrate(
     scene : Scene, optional
         What is thought to be the geometry: the scene of `phi` unless given.
     frame_gain : float
-        Relative standard deviation of an unknown gain of each frame.
+        Relative standard deviation of an unknown gain of each frame; that of the photographs' gains unless given.
     free_scale : bool
         Whether the scale of all light is unknown.
     error_field : bool
@@ -160,7 +160,7 @@ def calibrate(
         stderr,
         flags,
         free=given,
-        frame_gain=setting(frame_gain, "frame_gain"),
+        frame_gain=setting(phi.frame_gain if frame_gain is None else frame_gain, "frame_gain"),
         free_scale=bool(free_scale),
         error_field=bool(error_field),
         replicates=phi.replicates,

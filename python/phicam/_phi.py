@@ -107,6 +107,16 @@ class Phi:
         """Of photographs: the part of the variance that is that of the dark frames, which all spots of a pixel share."""
         return float(self.account.get("common") or 0.0)
 
+    @property
+    def frame_gain(self) -> float | None:
+        """Of photographs: the largest relative error of a gain, which all pixels of a frame share; None where gains are exact.
+
+        Recovery, verdict and calibration take it where they are not told another; standard errors leave it out.
+        """
+        errors = [error / gain for _, gain, error in self.account.get("gains") or ()]
+        largest = max(errors, default=0.0)
+        return largest if largest > 0.0 else self.account.get("frame_gain")
+
     def _digest(self) -> str:
         """Of flux and errors."""
         digest = hashlib.blake2b(digest_size=16)

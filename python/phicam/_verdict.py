@@ -132,6 +132,7 @@ def validate(
         absorbed = background and not phi.is_rendered
         errors = errors or (phi.errors if own and not absorbed else "independent")  # type: ignore[assignment]
         replicates = phi.replicates if own and replicates is None else replicates
+        frame_gain = phi.frame_gain if own and frame_gain is None else frame_gain
     elif model is None:
         raise InputError("nothing says of which scene the array is\n  cure: give model=, a Scene or a Model")
     else:

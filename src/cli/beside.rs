@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_other_shape};
 use super::run_folder::LEFT_OUT;
 use super::settings::within;
+use crate::folder::Origin;
 use crate::lab::polynomials;
 use crate::matrix::{Matrix, npy};
 use crate::recovery::{Nuisance, Setting};
@@ -137,6 +138,23 @@ fn patterns(args: &BesideArgs, of: &PhotographSize) -> Result<Option<Matrix>, Fa
             Matrix::from_columns(&all)
         }
     }))
+}
+
+impl BesideArgs {
+    /// The same for the photographs of `origin`, whose gains may be known roughly, where nothing is
+    /// said of them.
+    pub(super) fn of_photographs(&self, origin: &Origin, console: Console) -> Self {
+        let own = origin.frame_gain().filter(|_| self.frame_gain.is_none());
+        if let Some(own) = own {
+            console.say(format!(
+                "the gains of these photographs are known to {own}: --frame-gain {own}"
+            ));
+        }
+        Self {
+            frame_gain: self.frame_gain.or(own),
+            ..self.clone()
+        }
+    }
 }
 
 /// Refuses deviations without a meaning.

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::args::CalibrateArgs;
 use super::console::Console;
-use super::failure::Failure;
+use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
-use super::interrupt::SignalGuard;
 use super::load_run::{read_bare_scene, read_run};
 use super::process::{pool, version};
 use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
@@ -32,7 +31,16 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         .and_then(|r| r.origin.plan())
         .map(|plan| plan.budget.blocks);
     let replicates = args.replicates.or(replicates);
-    let plan = plan(args, (&scene, replicates), console);
+    let gain = own.and_then(|record| record.origin.frame_gain());
+    let plan = CalibrationPlan {
+        frame_gain: args.frame_gain.or(gain),
+        ..plan(args, (&scene, replicates), console)
+    };
+    if let (Some(gain), None) = (plan.frame_gain, args.frame_gain) {
+        console.say(format!(
+            "the gains of these photographs are known to {gain}: --frame-gain {gain}"
+        ));
+    }
     need::calibrate(&scene, plan.elements)?;
     let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
     let photographs = match (&args.phi, &record) {
@@ -51,19 +59,17 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         .unwrap_or_else(|| args.dir.join(CALIBRATED));
     let lock = RunFolder::lock(&output, "phicam calibrate")?;
     let pool = pool(args.threads)?;
-    let guard = SignalGuard::new();
     let what = format!("calibrate {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
         pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
     });
-    drop(guard);
     let calibration = match found {
         Ok(calibration) => calibration,
         Err(e) => {
             drop(lock);
             // Nothing is left where nothing was done.
             let _ = std::fs::remove_dir(&output);
-            return Err(Failure::of(e.into()));
+            return Err(Failure::of(e.into()).if_stopped(NOTHING_KEPT));
         }
     };
     let found = Found {
@@ -77,7 +83,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     console.say(format!(
         "{}: written; scene.toml there is the calibrated scene: `{}`",
         output.display(),
-        recovering(args, &output)
+        recovering(args, plan.frame_gain, &output)
     ));
     Ok(if found.agrees {
         Outcome::Done
@@ -87,7 +93,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
 }
 
 /// The command that recovers by the calibrated scene from the same photographs.
-fn recovering(args: &CalibrateArgs, calibrated: &Path) -> String {
+fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>, calibrated: &Path) -> String {
     let own = |name: &str| Some(args.dir.join(name)).filter(|file| file.exists());
     let (phi, stderr) = match &args.phi {
         Some(phi) => (phi.clone(), args.stderr.clone()),
@@ -115,7 +121,7 @@ fn recovering(args: &CalibrateArgs, calibrated: &Path) -> String {
     if args.error_field {
         command += " --method joint-gp --error-field";
     }
-    if let Some(gain) = args.frame_gain {
+    if let Some(gain) = frame_gain {
         command += &format!(" --frame-gain {gain}");
     }
     command

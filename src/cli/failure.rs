@@ -39,6 +39,9 @@ pub(super) enum Failure {
     Stopped(String),
 }
 
+/// What is said of a search that was stopped.
+pub(super) const NOTHING_KEPT: &str = "nothing of the search is kept: the same command begins anew";
+
 /// Which numbers say how a command failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Codes {

@@ -2,9 +2,8 @@
 
 use super::args::LocateArgs;
 use super::console::Console;
-use super::failure::Failure;
+use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
-use super::interrupt::SignalGuard;
 use super::load_run::read_run;
 use super::process::{pool, version};
 use super::run_folder::{LOCATED, RunFolder};
@@ -36,13 +35,11 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
         .unwrap_or_else(|| args.dir.join(LOCATED));
     let _lock = RunFolder::lock(&output, "phicam locate")?;
     let pool = pool(args.threads)?;
-    let guard = SignalGuard::new();
     let what = format!("locate in {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
         pool.install(|| plan.locate(&scene, &photographs.unexplained(), control))
     });
-    drop(guard);
-    let located = found.map_err(|e| Failure::of(e.into()))?;
+    let located = found.map_err(|e| Failure::of(e.into()).if_stopped(NOTHING_KEPT))?;
     let found = Found {
         json: serde_json::to_string_pretty(&located).map_err(|e| Failure::of(e.into()))?,
         finding: located.describe(),

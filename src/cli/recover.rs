@@ -13,7 +13,7 @@ use super::recover_options;
 use super::recovered::{collect, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
-use crate::folder::Record;
+use crate::folder::{Origin, Record};
 use crate::lab::{Certainty, RecoveredObject, by_trust};
 use crate::recovery::Method;
 use crate::store::digest;
@@ -63,6 +63,9 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         scene.clone()
     };
     let methods = methods(recover_memory::elements(args, &modelled));
+    let own = record.as_ref().filter(|_| has_own_errors(args, dir));
+    let gains = own.map(|record| with_gains(args, &record.origin, &methods, console));
+    let args = gains.as_ref().unwrap_or(args);
     recover_options::checked(args, &methods)?;
     let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
     let request = RecoveryRequest {
@@ -96,6 +99,38 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         console.say(format!("{}: written", out.display()));
     }
     tell(&objects, args.json)
+}
+
+/// The arguments for photographs whose gains may be known roughly. Methods that work pixel by pixel
+/// know nothing of them.
+fn with_gains(
+    args: &RecoverArgs,
+    origin: &Origin,
+    methods: &[Method],
+    console: Console,
+) -> RecoverArgs {
+    let joint = methods.iter().any(|method| method.is_joint());
+    let apart: Vec<&str> = methods
+        .iter()
+        .filter(|method| !method.is_joint())
+        .map(|method| method.name())
+        .collect();
+    if let (Some(own), false) = (origin.frame_gain(), apart.is_empty()) {
+        console.say(format!(
+            "warning: the gains of these photographs are known to {own}, of which {} know nothing: their \
+             errors are too small",
+            apart.join(", ")
+        ));
+    }
+    let beside = if joint {
+        args.beside.of_photographs(origin, console)
+    } else {
+        args.beside.clone()
+    };
+    RecoverArgs {
+        beside,
+        ..args.clone()
+    }
 }
 
 /// To what the results of a recovery belong.

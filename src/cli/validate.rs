@@ -29,11 +29,14 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
     }
     need::verdict(&scene)?;
     let size = PhotographSize::of_scene(&scene);
-    let beside = Beside::read(&args.beside, given.left_out, &size)?;
+    let own = given.run.as_ref();
+    let gains = own.map(|(_, record)| args.beside.of_photographs(&record.origin, console));
+    let nuisance = gains.as_ref().unwrap_or(&args.beside);
+    let beside = Beside::read(nuisance, given.left_out, &size)?;
     let measured = Measured {
         phi: &given.phi,
         stderr: &given.stderr,
-        beside: beside.nuisance(&args.beside),
+        beside: beside.nuisance(nuisance),
     };
     let against = Against {
         kernel: args.test.kernel,

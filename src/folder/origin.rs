@@ -7,7 +7,7 @@ use crate::photographs::SourceFile;
 use crate::transport::Plan;
 
 /// Rendered or imported. A record holds the keys of a plan, or the key `imported`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Origin {
     /// Traced by this plan.
@@ -20,7 +20,7 @@ pub enum Origin {
 }
 
 /// The photographs of a real camera.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Photographs {
     /// SHA-256 of all settings as JSON, hex.
     pub settings: String,
@@ -29,6 +29,10 @@ pub struct Photographs {
     /// Whether all spots of a pixel share an error that matters: that of their dark frames.
     #[serde(default)]
     pub shares_by_pixel: bool,
+    /// Largest relative error of a frame's gain, which all its pixels share; absent where all are
+    /// exact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame_gain: Option<f64>,
     /// The files that they were read from.
     pub sources: Vec<SourceFile>,
 }
@@ -45,6 +49,14 @@ impl Origin {
     /// Whether all spots of a pixel share an error of photographs.
     pub fn shares_by_pixel(&self) -> bool {
         matches!(self, Self::Imported { imported } if imported.shares_by_pixel)
+    }
+
+    /// How well the gains of photographs are known; none where they are exact.
+    pub fn frame_gain(&self) -> Option<f64> {
+        match self {
+            Self::Imported { imported } => imported.frame_gain,
+            Self::Rendered(_) => None,
+        }
     }
 
     /// The unit of photographs whose size is not that of light, so that it says nothing of

@@ -43,9 +43,12 @@ use order::Fault;
 use picture::Pictured;
 use place::{Lengths, Place, frames_of, parabola};
 
-/// Sizes of the second search: ± 1½ steps of the first.
+/// Sizes of the second search, ± 1½ steps of the first, and of each further one, until a step is no
+/// more than the error by the curvature: the parabola is the likelihood's within its width only.
 const FINE: usize = 9;
 const AROUND: f64 = 1.5;
+/// Searches at most: the last step is 1e-5 of the first.
+const SEARCHES: usize = 12;
 
 /// What may be looked for: its name on the command line, and that of the studies.
 pub const LOCATABLE: [(&str, &str); 9] = [
@@ -124,26 +127,46 @@ impl LocatedPlan {
         };
         let coarse = places(self.range, self.steps, false)?;
         let first = place::best(coarse.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
-        let step = (self.range[1] - self.range[0]) / (self.steps - 1) as f64;
-        let middle = coarse[first].size;
-        let around = [middle - AROUND * step, middle + AROUND * step];
-        let within = around.map(|t| t.clamp(self.range[0], self.range[1]));
-        let fine = places(within, FINE, true)?;
-        let at = place::best(fine.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
-        let best = &fine[at];
-        let peak = parabola(&fine, Place::log_likelihood);
-        // Where a frame matters so much that without it the peak is far, the whole range is needed.
-        let by_frames = match place::jackknife(&fine) {
+        let mut step = (self.range[1] - self.range[0]) / (self.steps - 1) as f64;
+        let mut middle = coarse[first].size;
+        let mut searches: Vec<Vec<Place>> = Vec::new();
+        let peak = loop {
+            let around = [middle - AROUND * step, middle + AROUND * step];
+            let within = around.map(|t| t.clamp(self.range[0], self.range[1]));
+            let fine = places(within, FINE, true)?;
+            let at = place::best(fine.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
+            let peak = parabola(&fine, Place::log_likelihood);
+            let own = (within[1] - within[0]) / (FINE - 1) as f64;
+            let is_fine = peak.is_some_and(|peak| own <= peak.stderr);
+            middle = fine[at].size;
+            searches.push(fine);
+            // At an end of the range there is no peak.
+            let is_end = self.range.contains(&middle);
+            if is_fine || is_end || searches.len() == SEARCHES {
+                break peak;
+            }
+            // Where the likeliest is the last of these, those beyond it are next.
+            step = peak.map_or(step, |_| own);
+        };
+        // Where a frame matters so much that without it the peak is far, a wider search is needed.
+        let by_frames = searches
+            .iter()
+            .rev()
+            .find_map(|fine| place::jackknife(fine));
+        let by_frames = match by_frames {
             None if photographs.phi.ncols() > 2 => {
                 place::jackknife(&places(self.range, self.steps, true)?)
             }
             found => found,
         };
+        let all = || coarse.iter().chain(searches.iter().flatten());
+        let best = all().max_by(|a, b| a.log_likelihood().total_cmp(&b.log_likelihood()));
+        let best = best.ok_or(LabError::DARK)?;
         let order = self.order(scene, photographs, &lengths, control)?;
         let there = altered
             .apply(scene, best.size)
             .unwrap_or_else(|| scene.clone());
-        let mut curve: Vec<&Place> = coarse.iter().chain(&fine).collect();
+        let mut curve: Vec<&Place> = all().collect();
         curve.sort_by(|a, b| a.size.total_cmp(&b.size));
         let likelihood = |p: &&Place| Likelihood {
             size: p.size,

@@ -189,14 +189,20 @@ fn hinge(scene: &Scene) -> Option<[DVec3; 2]> {
 }
 
 /// The axis through the middle of the first hidden surface that lies in its plane at right angles
-/// to the hinge (to u, where there is no hinge).
+/// to the hinge (to u, where there is no hinge), to the side of v: the turn is that of
+/// `hidden.yaw`.
 fn yaw_axis(scene: &Scene) -> Option<[DVec3; 2]> {
     let middle = first_hidden(scene)?.at([0.5; 2]);
     let along = match scene.hinge() {
         Some((_, axis)) => axis,
         None => along_u(scene)?,
     };
-    Some([middle.position, middle.normal.cross(along).try_normalize()?])
+    let axis = middle.normal.cross(along).try_normalize()?;
+    let along_v = side(scene, [[0.5, 0.0], [0.5, 1.0]])?;
+    Some([
+        middle.position,
+        if axis.dot(along_v) < 0.0 { -axis } else { axis },
+    ])
 }
 
 fn along_u(scene: &Scene) -> Option<DVec3> {

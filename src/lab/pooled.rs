@@ -4,9 +4,9 @@
 //! that take it for known come out wrong: of 3 replicates bands of 95 % held 9 to 30 %. Where noise
 //! is near a product of a pixel's and a spot's,
 //!
-//! > σ²\[p,l\] ≈ a\[p\] b\[l\],   a\[p\] = mean over l of s²/b\[l\],   b\[l\] = mean over p of s²/a\[p\]
+//! > σ²\[p,l\] ≈ a\[p\] b\[l\]
 //!
-//! (the equations of a gamma likelihood), the many say what each is. By how much σ² scatters about
+//! ([`Separable`]), the many say what each is. By how much σ² scatters about
 //! the product is seen in ln(s²/ab), whose variance would be ψ′(ν/2) if it did not; put as that of
 //! a variance known from d degrees of freedom, ψ′(d/2), the best of both is
 //!
@@ -18,6 +18,7 @@
 use super::evidence::{Errors, freedom};
 use super::fit::Certainty;
 use crate::matrix::Matrix;
+use crate::num::separable::Separable;
 use crate::num::statistics::{freedom_of_log_variance, trigamma};
 
 /// Replicates from which errors are as good as known: of 10, 95 % bands of `joint-gp` held 84 to
@@ -27,9 +28,6 @@ pub(super) const ENOUGH_REPLICATES: u32 = 32;
 /// Variances whose logarithms scatter less than chance lets them, by so many standard errors, were
 /// not estimated entry by entry: that all are alike says nothing of how well they are known.
 const LESS_THAN_CHANCE: f64 = 5.0;
-/// Rounds of the alternation, and the change of the product at which it ends.
-const ROUNDS: usize = 100;
-const SETTLED: f64 = 1e-6;
 
 /// Standard errors, W, and what is known of them.
 #[derive(Debug)]
@@ -56,8 +54,8 @@ impl Pooled {
         let variance = stderr.map(|s| s * s);
         let counts = |at: usize| variance[at] > 0.0 && left_out.is_none_or(|out| out[at] == 0.0);
         let at: Vec<usize> = (0..variance.len()).filter(|at| counts(*at)).collect();
-        let product = product(&variance, &at);
-        let prior = product.scatter(&variance, &at, nu)?;
+        let product = Separable::of(&variance, &at);
+        let prior = freedom_of(&product, &variance, &at, nu)?;
         let mut pooled = stderr.clone();
         for &at in &at {
             pooled[at] = ((prior * product.at(at) + nu * variance[at]) / (prior + nu)).sqrt();
@@ -73,83 +71,27 @@ impl Pooled {
     }
 }
 
-/// a\[p\] b\[l\], of variances, W².
-struct Product {
-    pixels: Vec<f64>,
-    spots: Vec<f64>,
-    /// Numbers among both that are fitted.
-    fitted: usize,
-}
-
-impl Product {
-    /// Of the entry that is so far along the columns.
-    fn at(&self, at: usize) -> f64 {
-        let rows = self.pixels.len();
-        self.pixels[at % rows] * self.spots[at / rows]
+/// The degrees of freedom as from which `product` tells a variance: what its logarithm scatters
+/// beyond those of ν, one standard error of that more, and the error of the product itself. Finite;
+/// none where there are too few entries, or the scatter is no estimate's.
+fn freedom_of(product: &Separable, variance: &Matrix, at: &[usize], nu: f64) -> Option<f64> {
+    let n = at.len() as f64;
+    if at.len() < 2 * product.fitted {
+        return None;
     }
-
-    /// The degrees of freedom as from which the product tells a variance: what its logarithm
-    /// scatters beyond those of ν, one standard error of that more, and the error of the product
-    /// itself. Finite; none where there are too few entries, or the scatter is no estimate's.
-    fn scatter(&self, variance: &Matrix, at: &[usize], nu: f64) -> Option<f64> {
-        let n = at.len() as f64;
-        if at.len() < 2 * self.fitted {
-            return None;
-        }
-        let logs = at.iter().map(|&at| libm::log(variance[at] / self.at(at)));
-        let logs: Vec<f64> = logs.collect();
-        let mean = logs.iter().sum::<f64>() / n;
-        let moment = |k: i32| logs.iter().map(|x| (x - mean).powi(k)).sum::<f64>() / n;
-        let (second, fourth) = (moment(2), moment(4));
-        let stderr = ((fourth - second * second) / n).sqrt();
-        // A fit of m numbers takes m/n of the variance 2/ν of s², and as much of the covariance.
-        let own = self.fitted as f64 / n * 2.0 / nu;
-        let beyond = second - (trigamma(0.5 * nu) - own);
-        (beyond > -LESS_THAN_CHANCE * stderr)
-            .then(|| freedom_of_log_variance(beyond.max(0.0) + stderr + own))
-    }
-}
-
-/// The product that fits the `variance` of the entries `at`.
-fn product(variance: &Matrix, at: &[usize]) -> Product {
-    let (rows, columns) = variance.shape();
-    let mut counts = (vec![0.0f64; rows], vec![0.0f64; columns]);
-    for at in at {
-        counts.0[at % rows] += 1.0;
-        counts.1[at / rows] += 1.0;
-    }
-    let any = |counts: &[f64]| counts.iter().filter(|n| **n > 0.0).count();
-    let fitted = (any(&counts.0) + any(&counts.1)).saturating_sub(1);
-    let (mut pixels, mut spots) = (vec![1.0; rows], vec![1.0; columns]);
-    for _ in 0..ROUNDS {
-        let mut sums = vec![0.0; columns];
-        at.iter()
-            .for_each(|at| sums[at / rows] += variance[*at] / pixels[at % rows]);
-        let last = std::mem::replace(&mut spots, means(&sums, &counts.1));
-        let mut sums = vec![0.0; rows];
-        at.iter()
-            .for_each(|at| sums[at % rows] += variance[*at] / spots[at / rows]);
-        pixels = means(&sums, &counts.0);
-        let changes = spots
-            .iter()
-            .zip(&last)
-            .map(|(b, was)| (b / was - 1.0).abs());
-        if changes.fold(0.0, f64::max) < SETTLED {
-            break;
-        }
-    }
-    Product {
-        pixels,
-        spots,
-        fitted,
-    }
-}
-
-/// Sums over their counts; 1 of none.
-fn means(sums: &[f64], counts: &[f64]) -> Vec<f64> {
-    let each = sums.iter().zip(counts);
-    each.map(|(sum, n)| if *n > 0.0 { sum / n } else { 1.0 })
-        .collect()
+    let logs = at
+        .iter()
+        .map(|&at| libm::log(variance[at] / product.at(at)));
+    let logs: Vec<f64> = logs.collect();
+    let mean = logs.iter().sum::<f64>() / n;
+    let moment = |k: i32| logs.iter().map(|x| (x - mean).powi(k)).sum::<f64>() / n;
+    let (second, fourth) = (moment(2), moment(4));
+    let stderr = ((fourth - second * second) / n).sqrt();
+    // A fit of m numbers takes m/n of the variance 2/ν of s², and as much of the covariance.
+    let own = product.fitted as f64 / n * 2.0 / nu;
+    let beyond = second - (trigamma(0.5 * nu) - own);
+    (beyond > -LESS_THAN_CHANCE * stderr)
+        .then(|| freedom_of_log_variance(beyond.max(0.0) + stderr + own))
 }
 
 #[cfg(test)]

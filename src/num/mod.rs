@@ -21,6 +21,7 @@ pub mod quadratic;
 pub mod quadrature;
 #[doc(hidden)]
 pub mod search;
+pub mod separable;
 pub mod statistics;
 pub mod stream;
 #[doc(hidden)]

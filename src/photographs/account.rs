@@ -54,7 +54,8 @@ pub struct ImportAccount {
     pub mark_rms: Option<f64>,
     /// Error of a mark along each axis that explains them, px.
     pub mark_error: Option<f64>,
-    /// The gain of each spot that has one other than 1, with its standard error.
+    /// The gain of each spot that has one other than 1, with its standard error, which all pixels
+    /// of the photograph share: the standard errors of Φ leave it out.
     pub gains: Vec<(usize, f64, f64)>,
     /// Part of the variance that is that of the dark frames, which all spots of a pixel share, mean
     /// over the entries.
@@ -67,4 +68,12 @@ pub struct ImportAccount {
     pub warnings: Vec<String>,
     /// What was read.
     pub files: Vec<SourceFile>,
+}
+
+impl ImportAccount {
+    /// The largest relative error of a gain; none where all are exact.
+    pub fn frame_gain(&self) -> Option<f64> {
+        let each = self.gains.iter().map(|(_, gain, error)| error / gain);
+        Some(each.fold(0.0, f64::max)).filter(|most| *most > 0.0)
+    }
 }

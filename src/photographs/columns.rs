@@ -2,6 +2,7 @@
 
 use super::correct::{Correction, Flat};
 use super::error::{PhotographError, refused};
+use super::expected::expected;
 use super::footprints::Footprints;
 use super::highest::Highest;
 use super::left_out::{DEAD, HALO, MISSING, OUTSIDE, SATURATED, in_halo};
@@ -25,6 +26,9 @@ pub(super) struct Columns {
     pub photographs: usize,
     pub zeros: f64,
     pub highest: Highest,
+    /// How much too dark the light as a whole comes out, in its standard errors, where the variance
+    /// of an entry is by its own light and entries are weighted by it.
+    pub by_own_light: f64,
     /// Part of the variance that is that of the dark frames, mean over the entries.
     pub common: f64,
     /// Part of the variance that is that of the flat field, mean over the entries.
@@ -60,9 +64,12 @@ impl Columns {
             photographs: 0,
             zeros: 0.0,
             highest: Highest::default(),
+            by_own_light: 0.0,
             common: 0.0,
             of_flat: 0.0,
         };
+        let mut slopes = Matrix::zeros(pixels, spots);
+        let weights = placing.footprints.gathered(&vec![1.0; found.mean.len()]);
         let code = Codes {
             set,
             scene,
@@ -92,11 +99,11 @@ impl Columns {
             if (take.gain, take.gain_error) != (1.0, 0.0) {
                 found.gains.push((spot, take.gain, take.gain_error));
             }
-            let relative = take.gain_error / take.gain;
             let flux = placing.footprints.gathered(&corrected.flux);
             let variance = corrected
                 .variance
                 .map(|v| placing.footprints.gathered_variance(&v));
+            let slope = placing.footprints.gathered_variance(&corrected.slope);
             for pixel in 0..pixels {
                 let code = code.of(spot, pixel, &mean.saturated);
                 found.left_out[(pixel, spot)] = f64::from(code);
@@ -106,9 +113,9 @@ impl Columns {
                 let value = factor * flux[pixel];
                 found.phi[(pixel, spot)] = value;
                 if let Some(variance) = &variance {
-                    let of_gain = relative * value;
-                    let all = factor * factor * variance[pixel] + of_gain * of_gain;
-                    found.stderr[(pixel, spot)] = all.sqrt();
+                    // All pixels share the gain's error: it is not one of the entry.
+                    found.stderr[(pixel, spot)] = factor * variance[pixel].sqrt();
+                    slopes[(pixel, spot)] = factor * slope[pixel] / weights[pixel];
                 }
             }
             Ok(())
@@ -117,6 +124,9 @@ impl Columns {
         found.mean.iter_mut().for_each(|x| *x /= seen.max(1) as f64);
         found.common /= seen.max(1) as f64;
         found.of_flat /= seen.max(1) as f64;
+        if noise.is_some() {
+            found.expect(&slopes)?;
+        }
         if found.phi.iter().any(|x| !x.is_finite()) {
             return Err(refused(
                 "a flux comes out as infinite",
@@ -124,6 +134,26 @@ impl Columns {
             ));
         }
         Ok(found)
+    }
+}
+
+impl Columns {
+    /// Puts standard errors of the expected light in place of those of the light measured, which
+    /// raise variances by `slopes`, W.
+    fn expect(&mut self, slopes: &Matrix) -> Result<(), PhotographError> {
+        let variance = self.stderr.map(|s| s * s);
+        if let Some(variance) = expected(&variance, slopes, &self.left_out)? {
+            self.stderr = variance.map(f64::sqrt);
+            return Ok(());
+        }
+        // Σ k Φ/V less than the Σ Φ²/V of the least squares, whose error is its root.
+        let known = (0..variance.len()).filter(|at| variance[*at] > 0.0);
+        let [less, all] = known.fold([0.0; 2], |[less, all], at| {
+            let by = self.phi[at] / variance[at];
+            [less + slopes[at] * by, all + self.phi[at] * by]
+        });
+        self.by_own_light = less / all.max(f64::MIN_POSITIVE).sqrt();
+        Ok(())
     }
 }
 

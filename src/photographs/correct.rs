@@ -36,6 +36,8 @@ pub struct Corrected {
     pub flux: Vec<f64>,
     /// Its variance, (counts/s)²; `None` where the noise is not known.
     pub variance: Option<Vec<f64>>,
+    /// How the variance rises with the flux, counts/s; 0 where the noise is not known.
+    pub slope: Vec<f64>,
     /// Part of the variance that is that of the dark frames, mean over the pixels: an error that
     /// all photographs have in common.
     pub common: f64,
@@ -112,6 +114,7 @@ impl Correction<'_> {
         let pixels = shot.light.len();
         let mut flux = vec![0.0; pixels];
         let mut variance = self.noise.map(|_| vec![0.0; pixels]);
+        let mut slope = vec![0.0; pixels];
         let (mut common, mut of_flat, mut known) = (0.0, 0.0, 0u32);
         for k in 0..pixels {
             let (level, level_variance) = match self.flat {
@@ -129,6 +132,7 @@ impl Correction<'_> {
                 let own = of(shot, shot.light[k] - signal);
                 let dark = self.dark.map_or(0.0, |d| of(d, d.light[k]));
                 let flat = level_variance * flux[k] * flux[k];
+                slope[k] = noise.gain * shot.share * scale / shot.frames.max(1) as f64;
                 variance[k] = (own + dark) * scale * scale + flat;
                 if variance[k] > 0.0 {
                     common += dark * scale * scale / variance[k];
@@ -140,6 +144,7 @@ impl Correction<'_> {
         Ok(Corrected {
             flux,
             variance,
+            slope,
             common: common / f64::from(known.max(1)),
             of_flat: of_flat / f64::from(known.max(1)),
         })

@@ -5,23 +5,15 @@ use std::path::Path;
 use super::account::{ImportAccount, Imported};
 use super::columns::Columns;
 use super::error::{PhotographError, refused};
-use super::footprints::Evenness;
 use super::left_out::LeftOut;
 use super::list::{positions, tables};
-use super::noise::PhotonTransferFit;
 use super::placing::Placing;
 use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
-use crate::matrix::Matrix;
-use crate::num::digits::figure;
+use super::warnings::{bent, by_own_light, little_left, no_light, roughly, stretched, unsaid};
 use crate::scene::Scene;
-
-/// Probability of the photon transfer line below which it is said not to fit.
-const FITS: f64 = 1e-3;
-/// How far from square the pixels of a view without marks may be.
-const STRETCH: f64 = 0.02;
 
 /// The scene with the spots whose positions the set lists, if it does.
 ///
@@ -94,6 +86,9 @@ pub fn import(
             100.0 * columns.zeros / all as f64
         ));
     }
+    warnings.extend(by_own_light(columns.by_own_light));
+    let table = shots.response.as_ref();
+    warnings.extend(table.and_then(|table| table.beyond(columns.highest.value)));
     warnings.extend(
         columns
             .highest
@@ -103,7 +98,7 @@ pub fn import(
     let Placing {
         fitted, mapping, ..
     } = placing;
-    let account = ImportAccount {
+    let mut account = ImportAccount {
         scene: scene.name.clone(),
         scene_hash: scene.hash.clone(),
         set: set.clone(),
@@ -123,6 +118,7 @@ pub fn import(
         warnings,
         files: reader.sources(),
     };
+    account.warnings.extend(account.frame_gain().map(roughly));
     Ok(Imported {
         phi: columns.phi,
         stderr: noise.map(|_| columns.stderr),
@@ -130,33 +126,6 @@ pub fn import(
         mean: (columns.mean, shots.size),
         mapping,
         account,
-    })
-}
-
-/// That most entries are left out, or all.
-fn little_left(found: &LeftOut) -> Option<String> {
-    let reasons = found.reasons().into_iter().filter(|(_, count)| *count > 0);
-    let reasons: Vec<String> = reasons.map(|(why, n)| format!("{n} {why}")).collect();
-    let nothing = if found.left_out == found.entries {
-        ", so that nothing can be recovered"
-    } else {
-        ""
-    };
-    (2 * found.left_out > found.entries).then(|| {
-        format!(
-            "{} of {} entries are left out ({}){nothing}: check `saturation`, `full_scale`, `dead`, `flat`, `halo` and `crop`",
-            found.left_out,
-            found.entries,
-            reasons.join(", ")
-        )
-    })
-}
-
-/// That the light adds up to nothing, but for rounding, or to less.
-fn no_light(phi: &Matrix) -> Option<String> {
-    let all: f64 = phi.iter().map(|x| x.abs()).sum();
-    (phi.sum() <= 1e-9 * all).then(|| {
-        "the light of all photographs adds up to nothing, or less: check the dark frames, and whether the response fits".to_owned()
     })
 }
 
@@ -180,79 +149,11 @@ fn unit(watts: Option<f64>, takes: &[Take]) -> Result<&'static str, PhotographEr
     }
 }
 
-/// What the settings leave unsaid.
-fn unsaid(set: &Set, placing: &Placing) -> Vec<String> {
-    let checked = placing
-        .fitted
-        .as_ref()
-        .is_none_or(|f| f.mark_error.is_some());
-    let even = placing.evenness == Evenness::Even && set.flat.is_none();
-    let all = [
-        (
-            set.dark.is_none(),
-            "no dark frames: the camera's offset and other light stay in every entry; give `dark`, or recover with --background",
-        ),
-        (
-            set.flat.is_some() && set.flat_dark.is_none(),
-            "the flat field has no dark frames of its own (`flat_dark`): its offset stays in it",
-        ),
-        (
-            even,
-            "neither a flat field nor a camera matrix says how the photograph falls off to its corners: it is taken as even",
-        ),
-        (
-            !checked,
-            "four marks leave nothing to check the mapping by; give more",
-        ),
-        (
-            set.watts.is_none(),
-            "no factor to watts is known (`watts`): fluxes have an arbitrary unit; recover with --free-scale",
-        ),
-    ];
-    let said = all.into_iter().filter(|(holds, _)| *holds);
-    said.map(|(_, words)| words.to_owned()).collect()
-}
-
-/// That a view of these sides fills a rectangle of `extent`, px, of another shape.
-fn stretched([columns, rows]: [f64; 2], [u, v]: [f64; 2]) -> Option<String> {
-    let ratio = (u / columns) / (v / rows);
-    (libm::log(ratio).abs() > libm::log(1.0 + STRETCH)).then(|| {
-        format!(
-            "without marks the scene's view, {u} wide and {v} high, fills {columns} × {rows} px: its pixels are {} times as wide as high; if the camera's are square, mend camera.view or give `crop` or marks",
-            figure(ratio, 3)
-        )
-    })
-}
-
-/// That the variance of repeats is no line.
-fn bent(line: &PhotonTransferFit) -> Option<String> {
-    let why = if line.noise.has_offset {
-        "without dark frames it is not told why; give `dark`"
-    } else {
-        "the laser flickers, or the response is not linear"
-    };
-    (line.p < FITS).then(|| {
-        format!(
-            "the variance of repeated photographs is no line over their light (probability {:.1e}, off by up to {:.0} %): {why}; the standard errors are those of the line",
-            line.p,
-            100.0 * line.largest_deviation
-        )
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::slice::from_ref;
 
     use super::*;
-
-    /// Pixels of a view of 3 × 2 that fills 300 × 200 px are square, of 4 × 2 a third wider.
-    #[test]
-    fn a_stretched_view_is_told() {
-        assert_eq!(stretched([300.0, 200.0], [3.0, 2.0]), None);
-        let told = stretched([300.0, 200.0], [4.0, 2.0]).unwrap();
-        assert!(told.contains("1.33 times as wide as high"), "{told}");
-    }
 
     #[test]
     fn watts_need_seconds() {

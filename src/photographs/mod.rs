@@ -24,6 +24,7 @@ mod account;
 mod columns;
 mod correct;
 mod error;
+mod expected;
 mod footprints;
 mod highest;
 mod import;
@@ -40,6 +41,7 @@ mod response;
 pub mod set;
 mod shots;
 mod takes;
+mod warnings;
 
 pub use account::{ImportAccount, Imported};
 pub use correct::{Corrected, Correction, Flat};

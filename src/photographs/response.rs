@@ -45,6 +45,17 @@ impl ResponseTable {
         })
     }
 
+    /// That stored values lie beyond the table, up to `highest`.
+    pub(super) fn beyond(&self, highest: f64) -> Option<String> {
+        let last = self.stored.iter().copied().fold(0.0, f64::max);
+        (highest > last).then(|| {
+            format!(
+                "stored values reach {highest} and the response table ends at {last}: light beyond is its last \
+                 line drawn on; measure the response farther, or give `saturation = {last}`"
+            )
+        })
+    }
+
     /// Light and slope at `s`.
     fn at(&self, s: f64) -> [f64; 2] {
         let last = self.stored.len() - 2;
@@ -121,6 +132,17 @@ impl Response {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_beyond_the_table_are_told() {
+        let table = ResponseTable::new(&[[0.0, 0.0], [1000.0, 3000.0]]).unwrap();
+        assert_eq!(table.beyond(1000.0), None);
+        let told = table.beyond(1001.0).unwrap();
+        assert!(
+            told.contains("reach 1001") && told.contains("saturation = 1000"),
+            "{told}"
+        );
+    }
 
     /// The first pair counts too where a spreadsheet put a byte-order mark before it.
     #[test]

@@ -20,7 +20,7 @@ pub(super) struct Shots<'a> {
     set: &'a Set,
     spots: usize,
     chosen: Chosen,
-    response: Option<ResponseTable>,
+    pub response: Option<ResponseTable>,
     pub takes: Vec<Take>,
     /// Columns and rows.
     pub size: [usize; 2],

@@ -167,13 +167,34 @@ fn a_list_says_what_the_photographs_are() {
         let (flux, variance) = (scale * flux, scale * scale * variance);
         let found = phi[(p, spot)];
         assert!((found / flux - 1.0).abs() < 1e-6, "{found} {flux}");
-        let of_gain = if spot == 2 { 0.05 * flux } else { 0.0 };
-        let due = (variance + of_gain * of_gain).sqrt();
-        let relative = stderr[(p, spot)] / found / (due / flux);
+        // The gain's error is one of the whole photograph, not of an entry.
+        let relative = stderr[(p, spot)] / found / (variance.sqrt() / flux);
         assert!((relative - 1.0).abs() < 1e-6, "{relative}");
     }
     let record = w.json("out/run.json");
     assert_eq!(record["imported"]["flux_unit"], "W");
+    assert_eq!(record["imported"]["frame_gain"], 0.05);
+    for (command, taken) in [
+        ("validate out", true),
+        ("recover out --method joint-unbounded", true),
+        (
+            "recover out --method joint-unbounded --frame-gain 0.1",
+            false,
+        ),
+        ("recover out --method pinv", false),
+    ] {
+        let told = w.phicam(command).stderr;
+        assert_eq!(
+            told.contains("--frame-gain 0.05"),
+            taken,
+            "{command}: {told}"
+        );
+        assert_eq!(
+            told.contains("pinv know nothing"),
+            command.contains("pinv"),
+            "{told}"
+        );
+    }
     // What is written is a run: it is validated, though it cannot be this scene's light.
     assert_eq!(w.phicam("validate out").code, 1);
 }

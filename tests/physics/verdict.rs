@@ -155,10 +155,7 @@ pub(super) fn deviant(name: &str, size: f64) -> Option<Scene> {
             DVec3::new(0.0, 15.5, 0.0),
             normal.cross(DVec3::Z).normalize(),
         )),
-        "yaw of S2" => moved(about(
-            middle,
-            normal.cross(normal.cross(DVec3::Z).normalize()),
-        )),
+        "yaw of S2" => moved(about(middle, v)),
         "S2 along its normal" => moved(DAffine3::from_translation(normal * size)),
         "S2 along u" => moved(DAffine3::from_translation(u * size)),
         "S2 along v" => moved(DAffine3::from_translation(v * size)),

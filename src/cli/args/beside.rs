@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 /// Terms that are estimated with what is asked for.
-#[derive(Debug, Arguments)]
+#[derive(Clone, Debug, Arguments)]
 pub(in crate::cli) struct BesideArgs {
     /// Other light: a constant in each frame
     #[arg(long)]

@@ -11,7 +11,7 @@ use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::recovery::{Method, Rule, WeightRule};
 
-#[derive(Debug, Arguments)]
+#[derive(Clone, Debug, Arguments)]
 #[command(after_long_help = explained(&["G12", "determined", "by centres", "degrees of freedom", "MTF raw", "MTF normalized", "RMSE", "singular values"]))]
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough, with --camera-side none is
@@ -106,7 +106,7 @@ pub(in crate::cli) struct RecoverArgs {
 }
 
 /// What the methods over all pixels and spots can do besides.
-#[derive(Debug, Arguments)]
+#[derive(Clone, Debug, Arguments)]
 pub(in crate::cli) struct JointArgs {
     /// By what the joint methods weigh the entries of Φcam
     #[arg(long, value_parser = choice::weighting(), default_value = "noise")]

@@ -40,7 +40,7 @@ pub(in crate::cli) struct TraceArgs {
 }
 
 /// Whether the model knows what stands in the way.
-#[derive(Debug, Arguments)]
+#[derive(Clone, Debug, Arguments)]
 pub(in crate::cli) struct OcclusionArgs {
     /// Leave out of the model what stands in the way, as the published one does
     #[arg(long)]

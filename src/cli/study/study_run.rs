@@ -70,7 +70,8 @@ impl StudyRun {
             ));
         }
         let what = format!("{} of {}", self.name, scene.name);
-        let guard = SignalGuard::new();
+        // A single task is not waited for.
+        let guard = (all.end > 1).then(SignalGuard::new);
         let parts = pool.install(|| compute(self, &what, &all, done, &mut checkpoint, console))?;
         drop(guard);
         let finished = end(&parts, &all);
