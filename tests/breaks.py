@@ -1249,6 +1249,42 @@ BREAKS = [
         "scene::material::grid::tests::what_is_reflected_is_the_closed_form",
         10,
     ),
+    Break(
+        "Of counts and of relative noise the light as a whole is right: variances are of the light expected",
+        "src/matrix/expected.rs",
+        "(with[at] - h * filled[at]) / (1.0 - h)",
+        "0.5 * (with[at] + filled[at])",
+        "lib",
+        "matrix::expected::tests::expected_light_weighs_without_bias",
+        10,
+    ),
+    Break(
+        "A place is searched as finely as its error",
+        "src/lab/located.rs",
+        "is_fine || is_end ||",
+        "is_fine || peak.is_some() || is_end ||",
+        "lib",
+        "lab::located::tests::little_noise_is_searched_as_finely",
+        10,
+    ),
+    Break(
+        "A turn is found with the sign of the scene's parameter",
+        "src/lab/misplaced.rs",
+        "axis.dot(along_v) < 0.0",
+        "axis.dot(along_v) > 0.0",
+        "lib",
+        "lab::located::tests::yaw_turns_as_the_parameter_does",
+        9,
+    ),
+    Break(
+        "A gain's error is one of the frame: entries leave it out, and what inverts them takes it",
+        "src/photographs/account.rs",
+        ".filter(|most| *most > 0.0)",
+        ".filter(|most| *most > 1.0)",
+        "cli",
+        "importing::a_list_says_what_the_photographs_are",
+        10,
+    ),
 ]
 
 

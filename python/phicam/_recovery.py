@@ -382,11 +382,9 @@ def recover(
     pixels = pair(pixels, "pixels")
     if pixels is not None and pixels[0] * pixels[1] != count[0]:
         raise InputError(f"pixels is {pixels}\n  cure: give columns and rows of {count[0]} pixels")
-    if noise is not None:
-        if stderr is not None:
-            raise InputError("stderr and noise are both given\n  cure: give one of them")
-        factor = setting(noise, "noise")
-        stderr = np.abs(np.asarray(flux, dtype=np.float64)) * factor
+    if noise is not None and stderr is not None:
+        raise InputError("stderr and noise are both given\n  cure: give one of them")
+    relative = setting(noise, "noise")
     named = None if method is None else [method] if isinstance(method, str) else list(method)
     if named is not None and (not named or len(set(named)) < len(named)):
         raise InputError(f"method is {method!r}\n  cure: name one or several methods, each once")
@@ -423,11 +421,14 @@ def recover(
     flags = others["left_out"]
     flux = without(flux, flags)
     _used({**settings, **others}, named)
+    known = None if stderr is None else without(spread(stderr, flux.shape, "stderr"), flags)
+    if relative is not None:
+        known = _native.relative_errors(flux, relative, flags)
     recovered = partial(
         _native.recover,
         inverse._core,
         flux,
-        None if stderr is None else without(spread(stderr, flux.shape, "stderr"), flags),
+        known,
         methods=named,
         is_grid=is_grid,
         settings=settings,

@@ -42,7 +42,9 @@ mod _native {
     #[pymodule_export]
     use crate::published::{again, published};
     #[pymodule_export]
-    use crate::recover::{methods, recover, setting_allows, setting_methods, setting_range};
+    use crate::recover::{
+        methods, recover, relative_errors, setting_allows, setting_methods, setting_range,
+    };
     #[pymodule_export]
     use crate::render::aimed;
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use numpy::PyArray2;
 use phicam::lab::{
     Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_objects,
 };
@@ -14,7 +15,7 @@ use phicam::transport::Control;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{array, errors, matrix, vector};
+use crate::arrays::{array, errors, matrix, maybe, vector};
 use crate::beside::Given;
 use crate::errors::{Raise, input, named};
 use crate::model::Model;
@@ -28,6 +29,20 @@ const HELD: f64 = 6.0;
 #[pyfunction]
 pub fn methods() -> Vec<&'static str> {
     Method::names().to_vec()
+}
+
+/// Standard errors of photographs with `noise` relative to each entry.
+#[pyfunction]
+#[pyo3(signature = (phi, noise, left_out))]
+pub fn relative_errors<'py>(
+    phi: &Bound<'py, PyAny>,
+    noise: f64,
+    left_out: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (flux, flags) = (matrix(phi, "phi")?, maybe(left_out, "left_out")?);
+    let found = phicam::matrix::relative_errors(&flux, noise, flags.as_ref());
+    let (stderr, _) = found.raise()?;
+    array(phi.py(), stderr)
 }
 
 /// A setting by its keyword.

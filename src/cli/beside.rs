@@ -10,7 +10,8 @@ use super::run_folder::LEFT_OUT;
 use super::settings::within;
 use crate::folder::Origin;
 use crate::lab::polynomials;
-use crate::matrix::{Matrix, npy};
+use crate::matrix::{self, Matrix, npy};
+use crate::num::digits::figure;
 use crate::recovery::{Nuisance, Setting};
 use crate::scene::Scene;
 
@@ -155,6 +156,28 @@ impl BesideArgs {
             ..self.clone()
         }
     }
+}
+
+/// Standard errors by which a whole may come out too dark before it is told.
+const TOO_DARK: f64 = 0.5;
+
+/// Standard errors of photographs with `noise` relative to each entry.
+pub(super) fn relative_errors(
+    phi: &Matrix,
+    noise: f64,
+    left_out: Option<&Matrix>,
+    console: Console,
+) -> Result<Matrix, Failure> {
+    let (stderr, too_dark) = matrix::relative_errors(phi, noise, left_out)?;
+    if too_dark > TOO_DARK {
+        console.say(format!(
+            "warning: fewer than 8 pixels or spots do not tell what light to expect: the noise is taken \
+             relative to the entries with their noise, and where they are weighted one by one (joint-gp, \
+             --weighting entries) the whole is too dark by {} of its standard errors; give --stderr",
+            figure(too_dark, 2)
+        ));
+    }
+    Ok(stderr)
 }
 
 /// Refuses deviations without a meaning.

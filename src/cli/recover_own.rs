@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Outcome;
 use super::args::RecoverArgs;
-use super::beside::{Beside, PhotographSize, left_out, mask};
+use super::beside::{Beside, PhotographSize, left_out, mask, relative_errors};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
@@ -64,22 +64,6 @@ pub(super) fn execute(
         return Err(Failure::new(cause, "give --elements NxM, or use joint"));
     }
     recover_options::checked(args, &methods)?;
-    let stderr = match (&args.stderr, args.noise) {
-        (Some(file), _) => {
-            let stderr = read_undamaged(file)?;
-            refuse_negative(file, &stderr)?;
-            Some(stderr)
-        }
-        (None, Some(noise)) => Some(phi.map(|x| x.abs() * noise)),
-        (None, None) => None,
-    };
-    let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
-        let certainty = Certainty {
-            replicates: args.replicates,
-            ..Certainty::STATED
-        };
-        Noise::StandardError(stderr, certainty)
-    });
     let of = PhotographSize {
         name: phi_file.display().to_string(),
         grid: args.pixels,
@@ -109,6 +93,22 @@ pub(super) fn execute(
         return Err(Failure::new(cause, cure));
     }
     let left_out = left_out(asked, phi_file, &of, console)?;
+    let stderr = match (&args.stderr, args.noise) {
+        (Some(file), _) => {
+            let stderr = read_undamaged(file)?;
+            refuse_negative(file, &stderr)?;
+            Some(stderr)
+        }
+        (None, Some(noise)) => Some(relative_errors(&phi, noise, left_out.as_ref(), console)?),
+        (None, None) => None,
+    };
+    let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
+        let certainty = Certainty {
+            replicates: args.replicates,
+            ..Certainty::STATED
+        };
+        Noise::StandardError(stderr, certainty)
+    });
     let beside = Beside::read(&args.beside, left_out, &of)?;
     let options = Options {
         uncertainty: uncertainty(&model, console),

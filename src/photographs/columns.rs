@@ -2,7 +2,6 @@
 
 use super::correct::{Correction, Flat};
 use super::error::{PhotographError, refused};
-use super::expected::expected;
 use super::footprints::Footprints;
 use super::highest::Highest;
 use super::left_out::{DEAD, HALO, MISSING, OUTSIDE, SATURATED, in_halo};
@@ -13,7 +12,7 @@ use super::read::Reader;
 use super::set::Set;
 use super::shots::Shots;
 use super::takes::Take;
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, expected};
 use crate::scene::Scene;
 
 /// The columns of all spots.
@@ -142,7 +141,15 @@ impl Columns {
     /// raise variances by `slopes`, W.
     fn expect(&mut self, slopes: &Matrix) -> Result<(), PhotographError> {
         let variance = self.stderr.map(|s| s * s);
-        if let Some(variance) = expected(&variance, slopes, &self.left_out)? {
+        let noise = slopes.zip_map(&variance, |k, v| k * k * v);
+        let found = expected(&variance, &noise, Some(&self.left_out)).map_err(|e| {
+            let cause = format!("the variances of the photographs have no decomposition: {e}");
+            refused(
+                cause,
+                "look for photographs without light, or far out of scale",
+            )
+        })?;
+        if let Some(variance) = found {
             self.stderr = variance.map(f64::sqrt);
             return Ok(());
         }

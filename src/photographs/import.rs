@@ -12,7 +12,9 @@ use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
-use super::warnings::{bent, by_own_light, little_left, no_light, roughly, stretched, unsaid};
+use super::warnings::{
+    bent, by_own_light, little_left, mirrored, no_light, roughly, stretched, unsaid,
+};
 use crate::scene::Scene;
 
 /// The scene with the spots whose positions the set lists, if it does.
@@ -64,7 +66,9 @@ pub fn import(
     warnings.extend(little_left(&left_out));
     warnings.extend(no_light(&columns.phi));
     let view = &scene.camera.view;
-    if placing.fitted.is_none() {
+    if placing.fitted.is_some() {
+        warnings.extend(mirrored(&placing.mapping, &scene.camera));
+    } else {
         let extent = set.crop.map(|c| [c.width, c.height]);
         let extent = extent.unwrap_or(shots.size.map(|n| n as f64));
         warnings.extend(stretched(extent, [view.u().length(), view.v().length()]));

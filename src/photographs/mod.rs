@@ -24,7 +24,6 @@ mod account;
 mod columns;
 mod correct;
 mod error;
-mod expected;
 mod footprints;
 mod highest;
 mod import;

@@ -2,16 +2,20 @@
 
 use super::footprints::Evenness;
 use super::left_out::LeftOut;
+use super::mapping::Mapping;
 use super::noise::PhotonTransferFit;
 use super::placing::Placing;
 use super::set::Set;
 use crate::matrix::Matrix;
 use crate::num::digits::figure;
+use crate::scene::Camera;
 
 /// Probability of the photon transfer line below which it is said not to fit.
 const FITS: f64 = 1e-3;
 /// How far from square the pixels of a view without marks may be.
 const STRETCH: f64 = 0.02;
+/// Part of the view over which a mapping's direction is taken.
+const STEP: f64 = 1e-3;
 
 /// That most entries are left out, or all.
 pub(super) fn little_left(found: &LeftOut) -> Option<String> {
@@ -52,6 +56,21 @@ pub(super) fn by_own_light(errors: f64) -> Option<String> {
              of its standard errors; take more light",
             figure(errors, 2)
         )
+    })
+}
+
+/// That marks show the wall as only a mirror would: right and up on it, seen from the camera, are
+/// right and down in a photograph, whose rows are counted from the top.
+pub(super) fn mirrored(mapping: &Mapping, camera: &Camera) -> Option<String> {
+    let at = |x: f64, y: f64| mapping.pixel([0.5 + x, 0.5 + y]);
+    let (here, right, up) = (at(0.0, 0.0)?, at(STEP, 0.0)?, at(0.0, STEP)?);
+    let along = |to: [f64; 2]| [to[0] - here[0], to[1] - here[1]];
+    let ([a, b], [c, d]) = (along(right), along(up));
+    let view = &camera.view;
+    let facing = view.u().cross(view.v());
+    let front = facing.dot(camera.position - view.at([0.5; 2]).position);
+    ((a * d - b * c) * front > 0.0).then(|| {
+        "the marks show the wall as in a mirror, which no camera on its side of it sees: check the order of their pixels and places, and whether the photographs are mirrored".to_owned()
     })
 }
 

@@ -372,6 +372,31 @@ fn refuses_list(w: &Workspace, list: &str, words: &[&str]) {
     w.refuses("import bad.toml -o out", words);
 }
 
+/// Right on the wall is right in a photograph, and up is up: marks that say else are of a mirror.
+#[test]
+fn a_mirrored_wall_is_told() {
+    let w = with_photographs();
+    for (flip, is_told) in [(1.0, false), (-1.0, true)] {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let marks = corners.map(|[x, y]| {
+            let u = 2.5 + flip * (5.0 * x - 2.5);
+            let (v, at) = (3.5 - 4.0 * y, [3.25 + 3.25 * x, 2.75 + 3.25 * y]);
+            format!("[[marks]]\npixel = [{u}, {v}]\nwall = {at:?}\n")
+        });
+        w.write(
+            "set.toml",
+            format!("{LIST}frames = \"in/input_*.png\"\n{}", marks.concat()),
+        );
+        let told = w.phicam("import set.toml -o mirror --replace").exits(0);
+        assert_eq!(
+            told.stderr.contains("as in a mirror"),
+            is_told,
+            "{}",
+            told.stderr
+        );
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_refused_and_nothing_is_written() {
     let w = with_photographs();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::is_own;
 use crate::cli::args::RecoverArgs;
-use crate::cli::beside::{Beside, PhotographSize, left_out, mask};
+use crate::cli::beside::{Beside, PhotographSize, left_out, mask, relative_errors};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_matrix, read_stderr};
@@ -42,8 +42,13 @@ impl RecoveryRequest<'_> {
         let Self { args, scene, .. } = *self;
         let phi = read_matrix(&self.phi, scene)?;
         self.refuse_clipped()?;
+        let of = PhotographSize::of_scene(scene);
+        let left_out = left_out(args.left_out.as_deref(), &self.phi, &of, self.console)?;
         let stderr = match self.errors() {
-            Errors::Relative(noise) => Some(phi.map(|x| x.abs() * noise)),
+            Errors::Relative(noise) => {
+                let known = relative_errors(&phi, noise, left_out.as_ref(), self.console)?;
+                Some(known)
+            }
             Errors::File(file) => Some(read_stderr(&file, scene)?),
             Errors::Unknown => {
                 self.console.say(
@@ -63,8 +68,6 @@ impl RecoveryRequest<'_> {
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, self.certainty)
         });
-        let of = PhotographSize::of_scene(scene);
-        let left_out = left_out(args.left_out.as_deref(), &self.phi, &of, self.console)?;
         let beside = Beside::read(&args.beside, left_out, &of)?;
         let nuisance = beside.nuisance(&args.beside);
         let options = Options {

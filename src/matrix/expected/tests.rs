@@ -37,8 +37,9 @@ fn expected_light_weighs_without_bias() {
         }
         let mut variance = counts.clone();
         variance.zip_apply(&left_out, |v, flag| *v = if flag != 0.0 { 1e9 } else { *v });
-        let slope = Matrix::from_element(pixels, spots, 1.0);
-        let found = expected(&variance, &slope, &left_out).unwrap().unwrap();
+        let found = expected(&variance, &variance, Some(&left_out))
+            .unwrap()
+            .unwrap();
         let factor = |variance: &Matrix| {
             let at = (0..variance.len()).filter(|at| left_out[*at] == 0.0);
             let [x, all, chi2] = at.fold([0.0; 3], |[x, all, chi2], at| {
@@ -77,26 +78,60 @@ fn expected_light_weighs_without_bias() {
     );
 }
 
-/// Where light is plenty variances stay to less than their own noise, and where none of it comes
-/// from light they stay to the bit; few spots tell nothing.
+/// Where light is plenty it stays to less than its noise, and where there is no noise to the bit;
+/// few columns tell nothing.
 #[test]
 fn plenty_of_light_stays() {
     let [mean, _] = counted(1, 30, 20);
-    let (plenty, left_out) = (mean * 1e8, Matrix::zeros(30, 20));
-    let slope = Matrix::from_element(30, 20, 1.0);
-    let found = expected(&plenty, &slope, &left_out).unwrap().unwrap();
+    let plenty = mean * 1e8;
+    let found = expected(&plenty, &plenty, None).unwrap().unwrap();
     for (x, exact) in found.iter().zip(&plenty) {
         assert!((x - exact).abs() < exact.sqrt(), "{x} {exact}");
     }
     let none = Matrix::zeros(30, 20);
-    assert_eq!(
-        expected(&plenty, &none, &left_out).unwrap().unwrap(),
-        plenty
-    );
-    let few = |m: &Matrix| m.columns(0, 7).into_owned();
-    assert!(
-        expected(&few(&plenty), &few(&slope), &few(&left_out))
-            .unwrap()
-            .is_none()
-    );
+    assert_eq!(expected(&plenty, &none, None).unwrap().unwrap(), plenty);
+    // A pixel that sees nothing leaves the others what they are.
+    let mut dark = plenty.clone();
+    dark.row_mut(4).fill(0.0);
+    let found = expected(&dark, &dark, None).unwrap().unwrap();
+    assert!(found.row(4).amax() == 0.0 && (&found - &dark).amax() < plenty.amax().sqrt());
+    let few = plenty.columns(0, 7).into_owned();
+    assert!(expected(&few, &few, None).unwrap().is_none());
+}
+
+/// Of 20 % noise the common factor by weights of what is expected is 1 within four of its standard
+/// errors, where weights by the entries themselves make it 1 − 2 ε² and less; of few spots that is
+/// told: 2 ε √N.
+#[test]
+fn relative_noise_weighs_without_bias() {
+    let (noise, draws) = (0.2, 24);
+    let (mut own, mut by_entries, mut entries) = (0.0, 0.0, 0.0);
+    for seed in 0..draws {
+        let [mean, _] = counted(0, 60, 40);
+        let phi = Matrix::from_fn(60, 40, |p, l| {
+            let key = Key {
+                seed,
+                spot: l as u32,
+                pixel: p as u32,
+                block: 1,
+            };
+            mean[(p, l)] * (1.0 + noise * Stream::new(Sampling::Pcg, key).normal())
+        });
+        let factor = |stderr: &Matrix| {
+            let weight = stderr.map(|s| 1.0 / (s * s));
+            let with = |x: &Matrix| weight.component_mul(x).dot(&mean);
+            with(&phi) / with(&mean) - 1.0
+        };
+        let (stderr, too_dark) = relative_errors(&phi, noise, None).unwrap();
+        assert_eq!(too_dark, 0.0);
+        own += factor(&stderr) / draws as f64;
+        by_entries += factor(&phi.map(|x| noise * x.abs().max(0.1))) / draws as f64;
+        entries = phi.len() as f64;
+        let few = phi.columns(0, 4).into_owned();
+        let (_, too_dark) = relative_errors(&few, noise, None).unwrap();
+        assert!((too_dark - 0.4 * 240f64.sqrt()).abs() < 1e-9);
+    }
+    let error = noise / (entries * draws as f64).sqrt();
+    assert!(own.abs() < 4.0 * error, "{own} {error}");
+    assert!(by_entries < -2.0 * noise * noise, "{by_entries} {error}");
 }
