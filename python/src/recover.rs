@@ -165,6 +165,7 @@ pub fn recover<'py>(
     let certainty = Certainty {
         errors: ways(errors_name)?,
         replicates,
+        ..Certainty::STATED
     };
     let attempts = run(py, threads, None, move |control| {
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {

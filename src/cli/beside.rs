@@ -145,17 +145,26 @@ impl BesideArgs {
     /// The same for the photographs of `origin`, whose gains may be known roughly, where nothing is
     /// said of them.
     pub(super) fn of_photographs(&self, origin: &Origin, console: Console) -> Self {
-        let own = origin.frame_gain().filter(|_| self.frame_gain.is_none());
-        if let Some(own) = own {
-            console.say(format!(
-                "the gains of these photographs are known to {own}: --frame-gain {own}"
-            ));
-        }
         Self {
-            frame_gain: self.frame_gain.or(own),
+            frame_gain: frame_gain(self.frame_gain, Some(origin), console),
             ..self.clone()
         }
     }
+}
+
+/// How well the gain of each frame is known: as is `said`, or of photographs as it was imported.
+pub(super) fn frame_gain(
+    said: Option<f64>,
+    origin: Option<&Origin>,
+    console: Console,
+) -> Option<f64> {
+    let own = origin.and_then(Origin::frame_gain);
+    if let (None, Some(own)) = (said, own) {
+        console.say(format!(
+            "the gains of these photographs are known to {own}: --frame-gain {own}"
+        ));
+    }
+    said.or(own)
 }
 
 /// Standard errors by which a whole may come out too dark before it is told.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::CalibrateArgs;
+use super::beside::frame_gain;
 use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
@@ -31,16 +32,11 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         .and_then(|r| r.origin.plan())
         .map(|plan| plan.budget.blocks);
     let replicates = args.replicates.or(replicates);
-    let gain = own.and_then(|record| record.origin.frame_gain());
+    let origin = own.map(|record| &record.origin);
     let plan = CalibrationPlan {
-        frame_gain: args.frame_gain.or(gain),
+        frame_gain: frame_gain(args.frame_gain, origin, console),
         ..plan(args, (&scene, replicates), console)
     };
-    if let (Some(gain), None) = (plan.frame_gain, args.frame_gain) {
-        console.say(format!(
-            "the gains of these photographs are known to {gain}: --frame-gain {gain}"
-        ));
-    }
     need::calibrate(&scene, plan.elements)?;
     let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
     let photographs = match (&args.phi, &record) {

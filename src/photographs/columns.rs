@@ -123,20 +123,18 @@ impl Columns {
         found.mean.iter_mut().for_each(|x| *x /= seen.max(1) as f64);
         found.common /= seen.max(1) as f64;
         found.of_flat /= seen.max(1) as f64;
-        if noise.is_some() {
-            found.expect(&slopes)?;
-        }
         if found.phi.iter().any(|x| !x.is_finite()) {
             return Err(refused(
                 "a flux comes out as infinite",
                 "check `watts`, `gain` and the exposure times",
             ));
         }
+        if noise.is_some() {
+            found.expect(&slopes)?;
+        }
         Ok(found)
     }
-}
 
-impl Columns {
     /// Puts standard errors of the expected light in place of those of the light measured, which
     /// raise variances by `slopes`, W.
     fn expect(&mut self, slopes: &Matrix) -> Result<(), PhotographError> {
