@@ -354,6 +354,7 @@ def recover(
     >>> bool(numpy.abs(found.reflectance - x).max() < 1e-2)
     True
     """
+    own = False
     if isinstance(phi, Phi):
         flux = phi.flux
         if left_out is None:
@@ -391,8 +392,8 @@ def recover(
     takers = _native.setting_methods("free_scale")
     if isinstance(phi, Phi) and not free_scale and any(name in takers for name in named or takers):
         phi.refuse_unscaled("give free_scale=True, or")
-    if isinstance(phi, Phi) and own and any(name in takers for name in named or takers):
-        frame_gain = phi.frame_gain if frame_gain is None else frame_gain
+    if isinstance(phi, Phi) and own and frame_gain is None and any(name in takers for name in named or takers):
+        frame_gain = phi.frame_gain
     is_grid = inverse.scene is not None or inverse._made_of[2] is not None
     settings = _Settings(
         rank=None if rank is None else whole(rank, "rank", 1),
