@@ -392,6 +392,7 @@ def recover(
     takers = _native.setting_methods("free_scale")
     if isinstance(phi, Phi) and not free_scale and any(name in takers for name in named or takers):
         phi.refuse_unscaled("give free_scale=True, or")
+    takers = _native.setting_methods("frame_gain")
     if isinstance(phi, Phi) and own and frame_gain is None and any(name in takers for name in named or takers):
         frame_gain = phi.frame_gain
     is_grid = inverse.scene is not None or inverse._made_of[2] is not None
