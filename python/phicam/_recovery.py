@@ -424,7 +424,10 @@ def recover(
     flux = without(flux, flags)
     _used({**settings, **others}, named)
     known = None if stderr is None else without(spread(stderr, flux.shape, "stderr"), flags)
-    if relative is not None:
+    if relative is not None and named is not None and not any(name in takers for name in named):
+        # Methods that work pixel by pixel weigh no entry by its error.
+        known = relative * np.abs(np.asarray(flux, dtype=np.float64))
+    elif relative is not None:
         known = _native.relative_errors(flux, relative, flags)
     recovered = partial(
         _native.recover,

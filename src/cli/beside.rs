@@ -12,7 +12,7 @@ use crate::folder::Origin;
 use crate::lab::polynomials;
 use crate::matrix::{self, Matrix, npy};
 use crate::num::digits::figure;
-use crate::recovery::{Nuisance, Setting};
+use crate::recovery::{Method, Nuisance, Setting};
 use crate::scene::Scene;
 
 /// Patterns that may be estimated in each frame.
@@ -170,13 +170,17 @@ pub(super) fn frame_gain(
 /// Standard errors by which a whole may come out too dark before it is told.
 const TOO_DARK: f64 = 0.5;
 
-/// Standard errors of photographs with `noise` relative to each entry.
+/// Standard errors of photographs with `noise` relative to each entry, for `methods`. Those that
+/// work pixel by pixel weigh no entry by them, and may read photographs by rows.
 pub(super) fn relative_errors(
-    phi: &Matrix,
-    noise: f64,
+    (phi, noise): (&Matrix, f64),
     left_out: Option<&Matrix>,
+    methods: &[Method],
     console: Console,
 ) -> Result<Matrix, Failure> {
+    if !methods.iter().any(|method| method.is_joint()) {
+        return Ok(phi.map(|x| noise * x.abs()));
+    }
     let (stderr, too_dark) = matrix::relative_errors(phi, noise, left_out)?;
     if too_dark > TOO_DARK {
         console.say(format!(

@@ -99,7 +99,12 @@ pub(super) fn execute(
             refuse_negative(file, &stderr)?;
             Some(stderr)
         }
-        (None, Some(noise)) => Some(relative_errors(&phi, noise, left_out.as_ref(), console)?),
+        (None, Some(noise)) => Some(relative_errors(
+            (&phi, noise),
+            left_out.as_ref(),
+            &methods,
+            console,
+        )?),
         (None, None) => None,
     };
     let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {

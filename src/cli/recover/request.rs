@@ -46,7 +46,8 @@ impl RecoveryRequest<'_> {
         let left_out = left_out(args.left_out.as_deref(), &self.phi, &of, self.console)?;
         let stderr = match self.errors() {
             Errors::Relative(noise) => {
-                let known = relative_errors(&phi, noise, left_out.as_ref(), self.console)?;
+                let known =
+                    relative_errors((&phi, noise), left_out.as_ref(), self.methods, self.console)?;
                 Some(known)
             }
             Errors::File(file) => Some(read_stderr(&file, scene)?),
