@@ -167,9 +167,6 @@ pub(super) fn frame_gain(
     said.or(own)
 }
 
-/// Standard errors by which a whole may come out too dark before it is told.
-const TOO_DARK: f64 = 0.5;
-
 /// Standard errors of photographs with `noise` relative to each entry, for `methods`. Those that
 /// work pixel by pixel weigh no entry by them, and may read photographs by rows.
 pub(super) fn relative_errors(
@@ -182,7 +179,7 @@ pub(super) fn relative_errors(
         return Ok(phi.map(|x| noise * x.abs()));
     }
     let (stderr, too_dark) = matrix::relative_errors(phi, noise, left_out)?;
-    if too_dark > TOO_DARK {
+    if too_dark > matrix::TOO_DARK {
         console.say(format!(
             "warning: fewer than 8 pixels or spots do not tell what light to expect: the noise is taken \
              relative to the entries with their noise, and where they are weighted one by one (joint-gp, \

@@ -83,11 +83,9 @@ pub fn recover_objects(
     options: &Options,
     control: Control<'_>,
 ) -> Vec<Attempt> {
-    let pooled = noise.pooled(nuisance);
-    let noise = noise.or(pooled.as_ref());
-    let (grids, shared) = (counts(model), Shared::default());
-    let problem = ready(model, phi, noise, nuisance, &grids, &shared);
-    attempts(model, &problem, noise, methods, options, control)
+    ready(model, (phi, noise), nuisance, |problem, noise| {
+        attempts(model, &problem, noise, methods, options, control)
+    })
 }
 
 /// The same with Φ in the singular directions of the model's laser side, and, where one of
@@ -106,18 +104,16 @@ pub fn recover_with_picards(
     options: &Options,
     control: Control<'_>,
 ) -> (Vec<Attempt>, Result<Vec<Picard>, RecoveryError>) {
-    let pooled = noise.pooled(nuisance);
-    let noise = noise.or(pooled.as_ref());
-    let (grids, shared) = (counts(model), Shared::default());
-    let problem = ready(model, phi, noise, nuisance, &grids, &shared);
-    let attempts = attempts(model, &problem, noise, methods, options, control);
-    // What has not been decomposed by then takes as long as a method.
-    let picards = if control.stopped() {
-        Ok(Vec::new())
-    } else {
-        problem.and_then(|problem| picards(&problem, methods, options))
-    };
-    (attempts, picards)
+    ready(model, (phi, noise), nuisance, |problem, noise| {
+        let attempts = attempts(model, &problem, noise, methods, options, control);
+        // What has not been decomposed by then takes as long as a method.
+        let picards = if control.stopped() {
+            Ok(Vec::new())
+        } else {
+            problem.and_then(|problem| picards(&problem, methods, options))
+        };
+        (attempts, picards)
+    })
 }
 
 /// Elements along u and v of each surface.
@@ -125,21 +121,26 @@ fn counts(model: &MatrixModel) -> Vec<[usize; 2]> {
     model.grids.iter().map(|grid| grid.count).collect()
 }
 
-/// All that is known of the photographs, as one problem.
-fn ready<'a>(
-    model: &'a MatrixModel,
-    phi: &'a Matrix,
-    noise: Noise<'a>,
-    nuisance: Nuisance<'a>,
-    grids: &'a [[usize; 2]],
-    shared: &'a Shared,
-) -> Result<Problem<'a>, RecoveryError> {
-    let problem = problem(model, phi, noise.known(model).map(|known| known.stderr))?;
-    let mut problem = problem.with_grids(grids)?.with_nuisance(nuisance)?;
-    if !model.places.is_empty() {
-        problem = problem.with_places(&model.places)?;
-    }
-    Ok(problem.sharing(shared))
+/// Does `act` with all that is known of the photographs, as one problem, and of their noise.
+fn ready<T>(
+    model: &MatrixModel,
+    (phi, noise): (&Matrix, Noise<'_>),
+    nuisance: Nuisance<'_>,
+    act: impl FnOnce(Result<Problem<'_>, RecoveryError>, Noise<'_>) -> T,
+) -> T {
+    let pooled = noise.pooled(nuisance);
+    let noise = noise.or(pooled.as_ref());
+    let (grids, shared) = (counts(model), Shared::default());
+    let stderr = noise.known(model).map(|known| known.stderr);
+    let problem = || {
+        let problem = problem(model, phi, stderr)?;
+        let mut problem = problem.with_grids(&grids)?.with_nuisance(nuisance)?;
+        if !model.places.is_empty() {
+            problem = problem.with_places(&model.places)?;
+        }
+        Ok(problem.sharing(&shared))
+    };
+    act(problem(), noise)
 }
 
 fn attempts(

@@ -6,9 +6,9 @@
 //!
 //! > σ²\[p,l\] ≈ a\[p\] b\[l\]
 //!
-//! ([`Separable`]), the many say what each is. By how much σ² scatters about
-//! the product is seen in ln(s²/ab), whose variance would be ψ′(ν/2) if it did not; put as that of
-//! a variance known from d degrees of freedom, ψ′(d/2), the best of both is
+//! ([`Separable`]), the many say what each is. By how much σ² scatters about the product is seen in
+//! ln(s²/ab), whose variance would be ψ′(ν/2) if it did not; put as that of a variance known from d
+//! degrees of freedom, ψ′(d/2), the best of both is
 //!
 //! > s̃² = (d a b + ν s²)/(d + ν),   known as from d + ν degrees of freedom.
 //!

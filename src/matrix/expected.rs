@@ -21,6 +21,8 @@ use crate::num::separable::Separable;
 
 /// Rows and columns of a block that is decomposed by itself: a second.
 const BLOCK: usize = 512;
+/// Standard errors by which a whole may come out too dark before it is told.
+pub const TOO_DARK: f64 = 0.5;
 /// Rows or columns below which noise is no smaller than a direction.
 const FEWEST: usize = 8;
 /// Rounds in which entries that are left out take what the others say.

@@ -14,7 +14,7 @@ pub mod mat;
 pub mod npy;
 
 pub use array::{Array, ArrayError, MOST_ENTRIES};
-pub use expected::{expected, relative_errors};
+pub use expected::{TOO_DARK, expected, relative_errors};
 
 /// A dense matrix of f64, stored by columns. As Φcam it has one row a camera pixel (row = column +
 /// row·columns of the pixel grid), one column a laser spot, and entries in W; G12, G23 and the

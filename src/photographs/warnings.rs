@@ -6,7 +6,7 @@ use super::mapping::Mapping;
 use super::noise::PhotonTransferFit;
 use super::placing::Placing;
 use super::set::Set;
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, TOO_DARK};
 use crate::num::digits::figure;
 use crate::scene::Camera;
 
@@ -43,9 +43,6 @@ pub(super) fn no_light(phi: &Matrix) -> Option<String> {
         "the light of all photographs adds up to nothing, or less: check the dark frames, and whether the response fits".to_owned()
     })
 }
-
-/// Standard errors by which light may come out too dark before it is told.
-const TOO_DARK: f64 = 0.5;
 
 /// That light comes out too dark by so many standard errors.
 pub(super) fn by_own_light(errors: f64) -> Option<String> {

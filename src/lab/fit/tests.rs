@@ -198,15 +198,19 @@ fn plate(place: &str) -> Scene {
     Scene::from_toml("near", &text).unwrap()
 }
 
+/// Its photographs without noise, by a rule that is not the model's.
+fn by_another_rule(scene: &Scene) -> Matrix {
+    let light = converged(scene, Kernel::Physical, Extent::FULL);
+    light.unwrap().phi
+}
+
 /// Photographs past a plate near the wall, by another rule ([`converged`]), with noise that is less
 /// than what elements, footprints and spots divided as usual leave: refuted as they stand, open
 /// with what the last steps move; with the plate elsewhere refuted all the same.
 #[test]
 fn what_integrals_leave_over_is_no_evidence() {
     let near = plate("[4.0, 4.0, 0.2]");
-    let clean = converged(&near, Kernel::Physical, Extent::FULL)
-        .unwrap()
-        .phi;
+    let clean = by_another_rule(&near);
     let stderr = clean.map(|x| 1.5e-4 * x + 5e-6 * clean.mean());
     let mut draw = normal(5);
     let phi = clean.zip_map(&stderr, |x, s| x + s * draw()[0]);
@@ -240,9 +244,7 @@ fn what_integrals_leave_over_is_no_evidence() {
 #[test]
 fn what_integrals_move_is_told_in_standard_errors() {
     let near = plate("[4.0, 4.0, 0.2]");
-    let clean = converged(&near, Kernel::Physical, Extent::FULL)
-        .unwrap()
-        .phi;
+    let clean = by_another_rule(&near);
     let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
     let model = MatrixModel::over_areas(&near, kernel, None, occlusion, Effort::USUAL).unwrap();
     let options = Options::default();
