@@ -110,7 +110,7 @@
 //! let traced = render(&scene, &plan, 0..scene.laser.spots.len(), Control::none())?;
 //!
 //! // Within the error bars at a significance of 0.1 %?
-//! let test = Test { significance: 1e-3, replicates: plan.budget.blocks, errors: Errors::Independent };
+//! let test = Test { significance: 1e-3, known: Certainty::of(&plan) };
 //! let measured = Measured::new(&traced.flux, &traced.stderr, None);
 //! let against = |kernel| {
 //!     let (integration, occlusion) = (Integration::Quadrature, Occlusion::Considered);

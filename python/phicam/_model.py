@@ -114,7 +114,7 @@ class Model:
 
     @_once
     def albedo(self) -> Floats:
-        """The scene's own reflectance of each element; ½ of matrices."""
+        """The scene's own reflectance of each element; ½ of matrices and where the scene does not know it."""
         return np.array(self._core.albedo)
 
     @_once
@@ -131,7 +131,7 @@ class Model:
         >>> dark.shape, float(dark.max())
         ((256, 120), 0.0)
         """
-        albedo = self.albedo if rho is None else vector(rho, "rho")
+        albedo = np.array(self._core.own_albedo()) if rho is None else vector(rho, "rho")
         return self._core.phi(albedo.tolist())
 
     def converged(self) -> tuple[Floats, Floats]:
@@ -155,7 +155,7 @@ class Model:
         >>> slope["hinge.angle"].shape
         (256, 120)
         """
-        albedo = self.albedo if rho is None else vector(rho, "rho")
+        albedo = np.array(self._core.own_albedo()) if rho is None else vector(rho, "rho")
         if len(albedo) != self.shape[1]:
             raise InputError(f"rho has {len(albedo)} numbers\n  cure: give one for each of {self.shape[1]} elements")
         return dict(self._core.derivatives(name, albedo.tolist()))

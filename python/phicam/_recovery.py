@@ -402,7 +402,7 @@ def recover(
         rule=rule,
         tolerance=setting(tolerance, "tolerance"),
         tv=setting(tv, "tv"),
-        levels=None if levels is None else (float(levels[0]), float(levels[1])),
+        levels=_levels(levels),
         weighting=weighting,
         bands=setting(bands, "bands"),
         error_field=bool(error_field),
@@ -474,12 +474,25 @@ def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -
         if elements is not None:
             raise InputError("elements is given with a Model\n  cure: make the model of as many elements")
         return given
+    if isinstance(given, str):
+        raise InputError(f"model is {given!r}\n  cure: give phicam.Scene({given!r})")
     if isinstance(given, tuple):
         sides: tuple[Any, ...] = given  # pyright: ignore[reportUnknownVariableType]
         if len(sides) != 2:
             raise InputError(f"model is a tuple of {len(sides)}\n  cure: give the pair (C, D)")
         return model_of(sides[0], sides[1], pair(elements, "elements"))
     return model_of(given, None, pair(elements, "elements"))
+
+
+def _levels(given: Any) -> tuple[float, float] | None:
+    """Two reflectances, or None."""
+    if given is None:
+        return None
+    try:
+        dark, light = (float(x) for x in given)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"levels is {given!r}\n  cure: give two reflectances, e.g. (0.1, 0.8)") from error
+    return dark, light
 
 
 def _used(settings: dict[str, Any], methods: Sequence[str] | None) -> None:

@@ -103,7 +103,7 @@ def validate(
     errors : str
         How errors hang together: ``independent``, ``pixel`` (those of one pixel), ``all``; that of `phi` unless given.
     replicates : int
-        From how many replicates each standard error was estimated; that of `phi`, else as many as one likes.
+        From how many replicates each standard error was estimated; that of `phi`, else as many as one likes. Errors from fewer than 32 are pooled over pixels and spots where these say more.
     frame_constant, frame_polynomial, frame_patterns, background, glare_pattern, free_scale, frame_gain, scale_error
         What else the photographs hold, fitted first, and not seen by the test: a constant, a polynomial of that degree, 0 to
         8, or patterns (pixels × patterns) in each frame; an image that is the same in all frames; strength of glare (pixels

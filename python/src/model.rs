@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use crate::arrays::{array, matrix, points};
 use crate::errors::{Raise, input, named};
 use crate::scene::Scene;
-use crate::work::{fits, run};
+use crate::work::{fits, knows_its_light, run};
 
 /// The kernel of that name.
 pub fn kernel(name: &str) -> PyResult<Kernel> {
@@ -115,6 +115,13 @@ impl Model {
         self.inner.albedo.clone()
     }
 
+    /// The same where the scene knows it.
+    fn own_albedo(&self) -> PyResult<Vec<f64>> {
+        let (scene, _) = self.own_scene()?;
+        knows_its_light(&scene)?;
+        Ok(self.inner.albedo.clone())
+    }
+
     /// Middles of the elements, elements × 3; empty of matrices from elsewhere.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -157,6 +164,7 @@ impl Model {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
         let (scene, occlusion) = self.own_scene()?;
+        knows_its_light(&scene)?;
         fits(py, &scene, |scene| need::model(scene, None, true))?;
         let kernel = self.inner.kernel;
         let found = run(py, None, None, move |_| {

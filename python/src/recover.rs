@@ -162,11 +162,7 @@ pub fn recover<'py>(
     run(py, None, None, refuse)?.raise()?;
     let (phi, stderr) = (matrix(phi, "phi")?, errors(stderr, "stderr")?);
     let beside = beside.read()?;
-    let certainty = Certainty {
-        errors: ways(errors_name)?,
-        replicates,
-        ..Certainty::STATED
-    };
+    let certainty = Certainty::new(ways(errors_name)?, replicates);
     let attempts = run(py, threads, None, move |control| {
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, certainty)

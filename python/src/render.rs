@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use crate::arrays::array;
 use crate::errors::{Raise, input};
 use crate::scene::Scene;
-use crate::work::{fits, run};
+use crate::work::{fits, knows_its_light, run};
 
 /// The plan of these settings.
 pub fn plan(estimator: &str, sampler: &str, seed: u64, samples: u64) -> PyResult<Plan> {
@@ -62,6 +62,7 @@ pub fn render<'py>(
     threads: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    knows_its_light(&scene.inner)?;
     let plan = plan(estimator, sampler, seed, samples)?;
     fits(py, &scene.inner, move |scene| need::render(scene, &plan))?;
     let scene = Arc::clone(&scene.inner);

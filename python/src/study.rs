@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use crate::errors::{input, raised};
 use crate::findings::found;
 use crate::scene::Scene;
-use crate::work::{fits, run};
+use crate::work::{fits, knows_its_light, run};
 
 /// An option: name, help, kind, default, whether it takes several.
 type Described = (
@@ -73,6 +73,7 @@ pub fn study<'py>(
         );
         return Err(input(cause, "use validate and recover for this scene"));
     }
+    knows_its_light(&scene.inner)?;
     fits(py, &scene.inner, need::study)?;
     let mut values = Values::defaults(registered.options);
     for (option, given) in options {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use numpy::PyArray2;
 use phicam::jobs::need;
 use phicam::lab::finding::Describe;
-use phicam::lab::{Against, Errors, Measured, Test, validate as validated};
+use phicam::lab::{Against, Certainty, Errors, Measured, Test, validate as validated};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -15,7 +15,7 @@ use crate::errors::{Raise, named};
 use crate::findings::found;
 use crate::model::{integration, kernel, occlusion};
 use crate::scene::Scene;
-use crate::work::{fits, run};
+use crate::work::{fits, knows_its_light, run};
 
 /// How errors hang together, by its name.
 pub fn errors(name: &str) -> PyResult<Errors> {
@@ -64,9 +64,9 @@ pub fn validate<'py>(
     };
     let test = Test {
         significance,
-        replicates: replicates.unwrap_or(u32::MAX),
-        errors: errors(errors_name)?,
+        known: Certainty::new(errors(errors_name)?, replicates),
     };
+    knows_its_light(&scene.inner)?;
     fits(py, &scene.inner, need::verdict)?;
     let phi = matrix(phi, "phi")?;
     let stderr = crate::arrays::errors(Some(stderr), "stderr")?.unwrap_or_default();

@@ -33,6 +33,17 @@ pub fn fits(
     run(py, None, None, move |_| check(&scene))?.raise()
 }
 
+/// Refuses a scene with an unknown albedo, whose light is unknown too.
+///
+/// # Errors
+/// `SceneError`.
+pub fn knows_its_light(scene: &Scene) -> PyResult<()> {
+    match scene.unknown() {
+        None => Ok(()),
+        Some(_) => scene.clone().known().map(|_| ()).raise(),
+    }
+}
+
 /// Runs `compute` on `threads` threads (all cores unless given) without the interpreter's lock.
 /// `progress` is called with how much is done. Ctrl-C stops it; one that does not look at its
 /// [`Control`] goes on unheard, and its result is dropped.

@@ -35,6 +35,10 @@ def changed(phi):
     return copy
 
 
+def unknown(scene):
+    return scene.replace({"surface.object.material": {"lambertian": "unknown"}})
+
+
 def refusing(folder):
     """A folder in which nothing can be made; root can write everywhere but where the system itself says no."""
     if os.geteuid() == 0:
@@ -75,6 +79,11 @@ MISUSES = [
     ("an unknown surface", SceneError, lambda s, p, t: s.replace({"surface.door.material": 1}), "wall"),
     ("an unknown parameter", SceneError, lambda s, p, t: s.displaced({"hinge.colour": 1.0}), "cure"),
     ("displaced by nan", Input, lambda s, p, t: s.displaced({"hinge.angle": math.nan}), "finite"),
+    ("light of an unknown albedo", SceneError, lambda s, p, t: phicam.render(unknown(s), samples=32), "is unknown"),
+    ("its verdict", SceneError, lambda s, p, t: phicam.validate(FLUX, unknown(s), stderr=FLUX), "is unknown"),
+    ("its photographs", SceneError, lambda s, p, t: phicam.model(unknown(s)).phi(), "is unknown"),
+    ("its integrals", SceneError, lambda s, p, t: phicam.model(unknown(s)).converged(), "is unknown"),
+    ("a study of it", SceneError, lambda s, p, t: phicam.study("noise", unknown(s)), "is unknown"),
     ("a picture without pixels", Input, lambda s, p, t: s.preview((0, 10)), "size"),
     # Renders.
     ("no samples", Input, lambda s, p, t: phicam.render(s, samples=0), "samples"),
@@ -123,6 +132,8 @@ MISUSES = [
     ("a model of matrices", Input, lambda s, p, t: phicam.validate(p, phicam.model_of(A)), "scene"),
     ("a probability of 2", Input, lambda s, p, t: phicam.validate(p, significance=2), "significance"),
     # Recoveries.
+    ("one level", Input, lambda s, p, t: phicam.recover(p, method="joint-two-valued", levels=0.5), "(0.1, 0.8)"),
+    ("by a name", Input, lambda s, p, t: phicam.recover(FLUX, "bench", stderr=FLUX), "phicam.Scene('bench')"),
     ("no such method", Input, lambda s, p, t: phicam.recover(p, method="magic"), "joint"),
     ("a method twice", Input, lambda s, p, t: phicam.recover(p, method=["pinv", "pinv"]), "once"),
     ("no method", Input, lambda s, p, t: phicam.recover(p, method=[]), "name"),

@@ -173,10 +173,7 @@ fn certainty(args: &RecoverArgs, dir: &Path, record: Option<&Record>) -> Certain
             // A background takes what all spots of a pixel share.
             None => {
                 let shared = record.origin.shares_by_pixel() && !args.beside.background;
-                Certainty {
-                    errors: crate::lab::Errors::of_photographs(shared),
-                    ..Certainty::STATED
-                }
+                Certainty::new(crate::lab::Errors::of_photographs(shared), None)
             }
         },
     };

@@ -213,7 +213,7 @@ impl Strips<'_> {
         }
         Ok(Judged {
             left_over: None,
-            fit: residuals.fit(found.freedom_used(), self.certainty.errors),
+            fit: residuals.fit(found.freedom_used(), self.certainty),
             best: None,
             determined: None,
             certainty: Some(self.certainty),

@@ -11,7 +11,7 @@ use super::load_run::{read_undamaged, refuse_negative};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, recovering, tell, write};
 use super::run_folder::{RunFolder, SATURATED};
-use crate::lab::{Certainty, Noise, by_trust, recover_with_picards};
+use crate::lab::{Certainty, Errors, Noise, by_trust, recover_with_picards};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options};
@@ -108,10 +108,7 @@ pub(super) fn execute(
         (None, None) => None,
     };
     let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
-        let certainty = Certainty {
-            replicates: args.replicates,
-            ..Certainty::STATED
-        };
+        let certainty = Certainty::new(Errors::Independent, args.replicates);
         Noise::StandardError(stderr, certainty)
     });
     let beside = Beside::read(&args.beside, left_out, &of)?;

@@ -5,7 +5,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::interrupt;
 use super::process::pool;
-use crate::lab::{self, Errors, PilotError, Test};
+use crate::lab::{self, Certainty, Errors, PilotError, Test};
 use crate::scene::Scene;
 use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface};
 
@@ -105,8 +105,7 @@ pub(super) fn test(args: &TestArgs, plan: &Plan, console: Console) -> Result<Tes
     }
     Ok(Test {
         significance,
-        replicates: plan.budget.blocks,
-        errors: Errors::of(plan.estimator),
+        known: Certainty::of(plan),
     })
 }
 
@@ -119,8 +118,7 @@ pub(super) fn test_of_matrix(
 ) -> Result<Test, Failure> {
     Ok(Test {
         significance: significance(args)?,
-        replicates: replicates.unwrap_or(u32::MAX),
-        errors,
+        known: Certainty::new(errors, replicates),
     })
 }
 

@@ -2,15 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::certainty::Errors;
 use super::eliminated::Eliminated;
-use super::evidence::{Errors, Evidence, Test};
+use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::residual::{Residual, Weights};
 use super::score::{Derivatives, Score, score};
 use crate::matrix::Matrix;
-use crate::num::statistics::{
-    chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal,
-};
+use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p, sidak_threshold};
 use crate::num::summation::mean_and_stderr;
 
 /// One entry of Φcam, traced and modelled.
@@ -53,6 +52,10 @@ pub struct Agreement {
     /// Points of the hidden surfaces at which the model asks what stands in the way; `None` if it
     /// does not ask.
     pub occlusion: Option<usize>,
+    /// Replicates as from which the standard errors are known, where those of few were pooled over
+    /// pixels and spots; `None` where they are as they were given.
+    #[serde(default)]
+    pub pooled: Option<u32>,
     /// Family-wise error rate of the verdict.
     pub significance: f64,
     /// Entries compared.
@@ -161,8 +164,8 @@ pub fn agree(
     let squares = z.norm_squared();
     let free = entries.saturating_sub(fitted).max(1) as f64;
     let chi2_per_dof = squares / free;
-    let dof = match test.errors {
-        Errors::Independent => free,
+    let dof = match test.known.errors {
+        Errors::Independent => test.known.of_chi2(free),
         Errors::WithinRows => effective_freedom(&z, entries) * free / entries.max(1) as f64,
         Errors::Everywhere => 1.0,
     };
@@ -194,6 +197,7 @@ pub fn agree(
         kernel: String::new(),
         integration: String::new(),
         occlusion: None,
+        pooled: None,
         significance: test.significance,
         entries,
         left_out: z.len() - entries,
@@ -234,7 +238,7 @@ fn deviate(evidence: &Evidence<'_>, test: Test, at: usize, model: f64) -> f64 {
         return 0.0;
     }
     let scale = evidence.stderr[at].max(evidence.rounding(at));
-    student_to_normal(beyond / scale, test.freedom()).copysign(difference)
+    test.known.normal(beyond / scale).copysign(difference)
 }
 
 /// Mean z² of those of some entries that count.

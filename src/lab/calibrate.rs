@@ -46,8 +46,8 @@ pub use descent::Stage;
 pub use identified::{Direction, Identified};
 pub use profile::Profile;
 
+use super::certainty::{Certainty, Errors};
 use super::error::LabError;
-use super::fit::Certainty;
 use super::misplaced::normal;
 use super::pooled::Pooled;
 use super::unexplained::Unexplained;
@@ -119,10 +119,7 @@ impl CalibrationPlan {
         photographs: &Unexplained<'_>,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
-        let known = Certainty {
-            replicates: self.replicates,
-            ..Certainty::STATED
-        };
+        let known = Certainty::new(Errors::Independent, self.replicates);
         let stderr = photographs.stderr;
         let pooled = stderr.and_then(|own| Pooled::of(own, known, photographs.left_out));
         let known = pooled.as_ref().map_or(known, |own| own.certainty);

@@ -34,7 +34,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         unjudged(found, judged),
         shared(judged),
         few_replicates(found, judged),
-        integrated(judged),
+        integrated(found, judged),
         overstated(judged),
         impossible(found),
         undetermined(found, judged),

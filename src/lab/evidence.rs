@@ -1,74 +1,11 @@
 //! What a model is tested with, and how.
 
+use super::certainty::Certainty;
 use super::eliminated::Eliminated;
 use crate::matrix::Matrix;
-use crate::transport::Estimator;
 
 /// A picture that explains the photographs is rejected with this probability.
 pub const FIT_LEVEL: f64 = 1e-3;
-
-/// How the errors of traced entries hang together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Errors {
-    /// Every entry has its own random numbers.
-    Independent,
-    /// Entries of one pixel share theirs: only different rows are independent.
-    WithinRows,
-    /// All entries share theirs.
-    Everywhere,
-}
-
-/// A part that is common, times the spots, above which errors are no longer independent: 5 % of the
-/// error of their mean.
-const NOTICED: f64 = 0.1;
-
-impl Errors {
-    /// Every way.
-    pub const ALL: [Errors; 3] = [Self::Independent, Self::WithinRows, Self::Everywhere];
-
-    /// The name by which it is asked for.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::WithinRows => "pixel",
-            Self::Everywhere => "all",
-        }
-    }
-
-    /// Those of an estimator.
-    pub fn of(estimator: Estimator) -> Self {
-        match estimator {
-            Estimator::Independent => Self::Independent,
-            Estimator::Shared => Self::WithinRows,
-            Estimator::Factored => Self::Everywhere,
-        }
-    }
-
-    /// Those of photographs of `spots` spots, a part `common` of whose variance all spots of a
-    /// pixel have in common: the error of their mean is √(1 + c (l − 1)) times that of independent
-    /// ones.
-    pub fn of_common(common: f64, spots: usize) -> Self {
-        Self::of_photographs(common * spots as f64 > NOTICED)
-    }
-
-    /// Those of photographs, all spots of a pixel of which share some or not.
-    pub fn of_photographs(shares_by_pixel: bool) -> Self {
-        if shares_by_pixel {
-            Self::WithinRows
-        } else {
-            Self::Independent
-        }
-    }
-
-    /// Which entries share their errors, in words: a recovery adds up entries as if none did.
-    pub fn shared(self) -> Option<&'static str> {
-        match self {
-            Self::Independent => None,
-            Self::WithinRows => Some("all spots of a pixel share theirs"),
-            Self::Everywhere => Some("all entries share theirs"),
-        }
-    }
-}
 
 /// What is compared.
 #[derive(Clone, Copy, Debug)]
@@ -112,20 +49,6 @@ const ROUNDING: f64 = 1e-14;
 pub struct Test {
     /// Probability of rejecting a right model.
     pub significance: f64,
-    /// Replicates from which each standard error was estimated.
-    pub replicates: u32,
-    /// How the errors hang together.
-    pub errors: Errors,
-}
-
-/// Degrees of freedom of a standard error from so many replicates.
-pub(super) fn freedom(replicates: u32) -> f64 {
-    f64::from(replicates.max(2) - 1)
-}
-
-impl Test {
-    /// Degrees of freedom of each standard error.
-    pub(super) fn freedom(&self) -> f64 {
-        freedom(self.replicates)
-    }
+    /// What is known of the standard errors.
+    pub known: Certainty,
 }

@@ -27,13 +27,15 @@ mod integrated;
 
 use serde::Serialize;
 
+use nalgebra::DVector;
+
 use super::agreement::freedom_of_rows;
-use super::evidence::{Errors, FIT_LEVEL, freedom};
+use super::certainty::{Certainty, Errors};
+use super::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::model::Factors;
-use crate::num::statistics::{chi_square_sf, student_to_normal};
+use crate::num::statistics::chi_square_sf;
 use crate::recovery::{Determined, Method, Options, Problem, Recovered, determined};
-use crate::transport::Plan;
 pub use attainable::Attainable;
 use attainable::LeftOver;
 pub(super) use attainable::ROUGH;
@@ -44,36 +46,6 @@ const MOST_ELEMENTS: usize = 1024;
 
 /// Elements up to which what the photographs determine is computed.
 const MOST_DECOMPOSED: usize = 2048;
-
-/// What is known of standard errors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Certainty {
-    /// How the errors of the entries hang together.
-    pub errors: Errors,
-    /// Replicates from which each was estimated, or as from which it is known; none where they are
-    /// known.
-    pub replicates: Option<u32>,
-    /// Whether those of pixels and spots were pooled.
-    pub is_pooled: bool,
-}
-
-impl Certainty {
-    /// Errors of their own for all entries, their size known.
-    pub const STATED: Self = Self {
-        errors: Errors::Independent,
-        replicates: None,
-        is_pooled: false,
-    };
-
-    /// What a render leaves.
-    pub fn of(plan: &Plan) -> Self {
-        Self {
-            errors: Errors::of(plan.estimator),
-            replicates: Some(plan.budget.blocks),
-            ..Self::STATED
-        }
-    }
-}
 
 /// How well what was recovered explains the photographs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -132,7 +104,6 @@ impl Residuals {
     /// Adds rows (pixels): the photographs, what the picture would photograph, and the standard
     /// errors, W.
     pub fn add(&mut self, phi: &Matrix, seen: &Matrix, stderr: &Matrix, certainty: Certainty) {
-        let freedom = certainty.replicates.map(freedom);
         for p in 0..phi.nrows() {
             let mut sum = 0.0;
             for l in 0..phi.ncols() {
@@ -143,7 +114,7 @@ impl Residuals {
                 }
                 self.entries += 1;
                 let t = ((phi[at] - seen[at]) / stderr[at]).abs();
-                let z = freedom.map_or(t, |freedom| student_to_normal(t, freedom));
+                let z = certainty.normal(t);
                 sum += z * z;
             }
             self.sums.push(sum);
@@ -152,15 +123,15 @@ impl Residuals {
 
     /// The fit of a picture that used up so many degrees of freedom; none where no entry has a
     /// standard error, and where the picture has as many unknowns as there are entries.
-    pub fn fit(&self, used: f64, errors: Errors) -> Option<Fit> {
+    pub fn fit(&self, used: f64, certainty: Certainty) -> Option<Fit> {
         let entries = self.entries as f64;
         let left = entries - used;
         if left < 0.5 {
             return None;
         }
         let chi2_per_dof = self.sums.iter().sum::<f64>() / left;
-        let dof = match errors {
-            Errors::Independent => left,
+        let dof = match certainty.errors {
+            Errors::Independent => certainty.of_chi2(left),
             Errors::WithinRows => freedom_of_rows(&self.sums, self.entries) * left / entries,
             Errors::Everywhere => 1.0,
         };
@@ -174,7 +145,7 @@ impl Residuals {
             level: FIT_LEVEL,
             fits: p >= FIT_LEVEL,
             within_integration: None,
-            pooled: None,
+            pooled: certainty.pooled(),
         })
     }
 }
@@ -191,10 +162,7 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
     let of = |seen: &Matrix| {
         let mut residuals = Residuals::default();
         residuals.add(phi, seen, &stderr, certainty);
-        Some(Fit {
-            pooled: certainty.replicates.filter(|_| certainty.is_pooled),
-            ..residuals.fit(found.freedom_used(), certainty.errors)?
-        })
+        residuals.fit(found.freedom_used(), certainty)
     };
     let seen = found.photographs(problem);
     let fit = of(&seen)?;
@@ -229,9 +197,8 @@ pub struct Judged {
     pub determined: Option<Determined>,
     /// What is known of the errors of the photographs; none where they are not.
     pub certainty: Option<Certainty>,
-    /// How far the integrals of the model may move an element, in its standard errors; none where
-    /// that is not known.
-    pub moved: Option<f64>,
+    /// How far the integrals of the model may move each element; none where that is not known.
+    pub moved: Option<DVector<f64>>,
 }
 
 impl Judged {

@@ -148,6 +148,7 @@ mod brdf;
 mod budget;
 mod bytes;
 mod calibrate;
+mod certainty;
 mod check;
 mod chosen;
 mod convergence;
@@ -226,16 +227,17 @@ pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
 pub use calibrate::{
     Calibrated, Calibration, CalibrationPlan, Direction, Free, Identified, Profile, Stage, Starts,
 };
+pub use certainty::{Certainty, Errors};
 pub use chosen::{Beside, Chosen, Ended};
 pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use eliminated::Eliminated;
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
-pub use evidence::{Errors, Evidence, FIT_LEVEL, Test};
+pub use evidence::{Evidence, FIT_LEVEL, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
-pub use fit::{Attainable, Certainty, Fit, Judged, Residuals};
+pub use fit::{Attainable, Fit, Judged, Residuals};
 pub use gains::{Deviations, Gains};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,

@@ -6,9 +6,10 @@ use nalgebra::DVector;
 
 use std::ops::Range;
 
+use super::certainty::Certainty;
 use super::chosen::{Beside, Chosen, Ended, words};
 use super::doubt::doubts;
-use super::fit::{Certainty, Judged, Known};
+use super::fit::{Judged, Known};
 use super::likelier::likelier;
 use super::measures::Measures;
 use super::pooled::Pooled;
@@ -212,8 +213,12 @@ fn picards(
 /// What was recovered, surface by surface, measured against the true albedo at the element centres,
 /// and what the photographs say of it.
 pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<RecoveredObject> {
-    let alone = judged.shared().map(|_| found.clone().without_errors());
-    let found = alone.as_ref().unwrap_or(found);
+    let own = match (judged.shared(), &judged.moved) {
+        (Some(_), _) => Some(found.clone().without_errors()),
+        (None, Some(moved)) => Some(found.clone().with_more_error(moved)),
+        (None, None) => None,
+    };
+    let found = own.as_ref().unwrap_or(found);
     // The bias of one element is of the truth of all.
     let known = model.grids.iter().all(|grid| grid.is_known);
     let bias = found.bias(&model.albedo).filter(|_| known);

@@ -22,7 +22,8 @@
 
 use std::ops::Range;
 
-use super::evidence::{Errors, Evidence, Test};
+use super::certainty::Errors;
+use super::evidence::{Evidence, Test};
 use crate::matrix::Matrix;
 use crate::num::statistics::{student_threshold, student_to_normal};
 
@@ -55,7 +56,7 @@ impl<'a> Residual<'a> {
     /// no weight.
     pub(super) fn new(evidence: Evidence<'a>, test: Test, how: Weights) -> Self {
         let (rows, columns) = evidence.model.shape();
-        let freedom = test.freedom();
+        let freedom = test.known.freedom();
         let known = |i: usize| {
             evidence.counts(i) && (evidence.stderr[i] > 0.0 || evidence.traced[i] != 0.0)
         };
@@ -83,7 +84,7 @@ impl<'a> Residual<'a> {
         };
         Self {
             evidence,
-            errors: test.errors,
+            errors: test.known.errors,
             freedom,
             weights,
             variance,

@@ -84,6 +84,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
         kernel: "physical".into(),
         integration: "centres".into(),
         occlusion: None,
+        pooled: None,
         significance: 0.01,
         entries: 30720,
         left_out: 0,

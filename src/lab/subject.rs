@@ -4,9 +4,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::certainty::Certainty;
 use super::ensemble::Photographs;
 use super::error::LabError;
-use super::fit::{Certainty, Residuals};
+use super::fit::Residuals;
 use super::problem::problem;
 use crate::metrics::{correlation, mtf_raw};
 use crate::model::MatrixModel;
@@ -162,7 +163,7 @@ pub(super) fn recovered(
     control.check()?;
     let mut residuals = Residuals::default();
     residuals.add(phi, &found.photographs(&problem), stderr, Certainty::STATED);
-    let fit = residuals.fit(found.freedom_used(), Certainty::STATED.errors);
+    let fit = residuals.fit(found.freedom_used(), Certainty::STATED);
     Ok(Recovery {
         likeness: subject.likeness(found.reflectance.as_slice(), truth),
         p: fit.map(|f| f.p),

@@ -12,11 +12,12 @@ use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::other_light::Left;
+use super::pooled::Pooled;
 use super::score::Derivatives;
 use super::unmodelled::unmodelled;
 
 /// Replicates from which errors are known well enough for deviations of the scene to be fitted.
-const FEWEST: u32 = 6;
+pub(super) const FEWEST: u32 = 6;
 
 /// How the model integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +123,7 @@ pub struct Validation {
 }
 
 /// Tests Φcam with its standard error against the model of `scene`, its derivatives included.
+/// Standard errors from few replicates are pooled over pixels and spots where these say more.
 ///
 /// What is `beside` it is fitted to the entries whose standard error is not zero, and taken out
 /// ([`Eliminated`](super::Eliminated)). A free scale that is not above 0 at the significance level
@@ -171,9 +173,13 @@ pub fn validate(
         bound += (&centres - phi).abs();
         phi = centres;
     }
+    let pooled = Pooled::of(measured.stderr, test.known, beside.left_out);
+    let pooled = pooled.as_ref();
+    let known = pooled.map_or(test.known, |own| own.certainty);
+    let test = Test { known, ..test };
     let evidence = Evidence {
         traced: measured.phi,
-        stderr: measured.stderr,
+        stderr: pooled.map_or(measured.stderr, |own| &own.stderr),
         model: &phi,
         bound: Some(&bound),
         left_out: beside.left_out,
@@ -186,7 +192,7 @@ pub fn validate(
         of: &|index| off.of(index),
     };
     // Below, a variance has no variance itself, and no fit a known error.
-    let derivatives = (test.replicates >= FEWEST).then_some(&derivatives);
+    let derivatives = (test.known.replicates.is_none_or(|n| n >= FEWEST)).then_some(&derivatives);
     let (mut agreement, z) = if beside.estimates() {
         beside_other_light(evidence, test, &beside, derivatives)?
     } else {
@@ -196,6 +202,7 @@ pub fn validate(
     integration.name().clone_into(&mut agreement.integration);
     agreement.occlusion = visible.as_ref().map(|v| v.points);
     agreement.unmodelled = unmodelled(scene);
+    agreement.pooled = known.pooled();
     if let Some(score) = &mut agreement.score {
         score.shadows_stay = off.are_shadows_still();
     }

@@ -7,6 +7,7 @@ use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed
 use super::gains::words;
 use super::score::{Deviation, Score};
 use super::summary::facts;
+use super::validation::FEWEST;
 use crate::num::digits::{figure, significant};
 
 fn percent(x: f64) -> String {
@@ -87,8 +88,11 @@ impl Agreement {
         let occlusion = self.occlusion.map_or(String::new(), |points| {
             format!(", occlusion by {points} points (what is smaller is not seen)")
         });
+        let pooled = self.pooled.map_or(String::new(), |n| {
+            format!("; standard errors pooled over pixels and spots, known as from {n} replicates")
+        });
         let test = format!(
-            "{} model, {}{occlusion}; significance {}, P(χ²) {}, P(|z|) {}",
+            "{} model, {}{occlusion}{pooled}; significance {}, P(χ²) {}, P(|z|) {}",
             self.kernel,
             self.integration,
             figure(self.significance, 2),
@@ -172,9 +176,11 @@ impl Agreement {
     /// The most likely cause of a disagreement, and from which size deviations are seen.
     fn limits(&self) -> Vec<(&'static str, String)> {
         let Some(score) = &self.score else {
-            let few = "no deviation of the scene was fitted: of fewer than 6 replicates standard errors \
-                       are too rough for it";
-            let told = ("detects", few.to_owned());
+            let few = format!(
+                "no deviation of the scene was fitted: of fewer than {FEWEST} replicates standard errors \
+                 are too rough for it"
+            );
+            let told = ("detects", few);
             return if self.evidence {
                 vec![told]
             } else {

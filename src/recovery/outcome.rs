@@ -111,6 +111,29 @@ impl Recovered {
         }
     }
 
+    /// The same with an error d of each element beside that of the noise, which no more photographs
+    /// make less: standard errors √(σ² + d²), covariance and limits of bands in proportion where
+    /// there are standard errors, limits d farther where there are none.
+    #[must_use]
+    pub fn with_more_error(mut self, d: &DVector<f64>) -> Self {
+        let more = self.standard_error.as_mut().map(|own| {
+            let more = own.zip_map(d, |s, d| if s > 0.0 { libm::hypot(s, d) / s } else { 1.0 });
+            own.component_mul_assign(&more);
+            more
+        });
+        if let (Some(covariance), Some(more)) = (&mut self.covariance, &more) {
+            *covariance = covariance.component_mul(&(more * more.transpose()));
+        }
+        let intervals = self.bands.iter_mut().flat_map(|b| &mut b.intervals);
+        for (j, [lower, upper]) in intervals.enumerate() {
+            let at = self.reflectance[j];
+            let by = more.as_ref().map(|more| more[j]);
+            *lower = by.map_or(*lower - d[j], |more| at - (at - *lower) * more);
+            *upper = by.map_or(*upper + d[j], |more| at + (*upper - at) * more);
+        }
+        self
+    }
+
     /// The bias (R − 1) ρ that regularisation gives an estimate of the reflectances `truth`; none
     /// without a resolution matrix, with a free scale, or for another number of elements. Of
     /// dropped directions ρ̂ itself knows nothing: put it in place of the truth, and the bias of

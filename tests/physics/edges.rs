@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2};
 
-use phicam::lab::{Errors, Evidence, Test, agree};
+use phicam::lab::{Certainty, Evidence, Test, agree};
 use phicam::matrix::Matrix;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
@@ -127,8 +127,7 @@ fn try_seeds(estimator: Estimator, seeds: u64) -> Tried {
         let traced = trace(&scene, way);
         let test = Test {
             significance: 0.05,
-            replicates: way.plan().budget.blocks,
-            errors: Errors::of(estimator),
+            known: Certainty::of(&way.plan()),
         };
         let evidence = Evidence {
             traced: &traced.flux,

@@ -28,7 +28,7 @@ mod verdict_past;
 
 use std::ops::Range;
 
-use phicam::lab::{Agreement, Errors, Evidence, Test, agree};
+use phicam::lab::{Agreement, Certainty, Errors, Evidence, Test, agree};
 use phicam::matrix::Matrix;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
@@ -72,8 +72,7 @@ fn builtin(name: &str, changes: &[(&str, &str)]) -> Scene {
 fn compare(traced: &Traced, truth: &Matrix, way: Way) -> Agreement {
     let test = Test {
         significance: 1e-4,
-        replicates: way.plan().budget.blocks,
-        errors: Errors::of(way.0),
+        known: Certainty::of(&way.plan()),
     };
     let evidence = Evidence {
         traced: &traced.flux,
@@ -105,8 +104,7 @@ fn assert_same_under(errors: Errors, a: &Traced, b: &Traced, what: &str) {
     // Two sets of 32 replicates: at least 31 degrees of freedom (Welch); rows may be correlated.
     let test = Test {
         significance: 1e-4,
-        replicates: 32,
-        errors,
+        known: Certainty::new(errors, Some(32)),
     };
     let verdict = agree(evidence, test, None).0;
     assert!(verdict.agrees, "{what}: {verdict:?}");

@@ -64,8 +64,7 @@ fn the_model_sees_past_what_the_tracer_sees_past() {
             };
             let test = Test {
                 significance: 1e-3,
-                errors: Errors::Everywhere,
-                replicates: way.plan().budget.blocks,
+                known: Certainty::new(Errors::Everywhere, Some(way.plan().budget.blocks)),
             };
             validate(&scene, measured, against, test).unwrap()
         };

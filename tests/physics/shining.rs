@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use phicam::lab::{Against, Errors, Integration, Measured, Test, validate};
+use phicam::lab::{Against, Certainty, Integration, Measured, Test, validate};
 use phicam::matrix::Matrix;
 use phicam::model::{Kernel, MatrixModel, Occlusion};
 use phicam::num::stream::Sampling;
@@ -151,8 +151,7 @@ fn small(changes: &[(&str, &str)]) -> Scene {
 fn agrees(scene: &Scene, traced: &Traced, way: Way, occlusion: Occlusion) -> bool {
     let test = Test {
         significance: 1e-4,
-        replicates: way.plan().budget.blocks,
-        errors: Errors::of(way.0),
+        known: Certainty::of(&way.plan()),
     };
     let measured = Measured::new(&traced.flux, &traced.stderr, None);
     let (kernel, integration) = (Kernel::Physical, Integration::Quadrature);

@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 
 use phicam::lab::{
-    Against, Deviation, Errors, Integration, Measured, Score, Test, Validation, ValidationError,
-    validate,
+    Against, Certainty, Deviation, Errors, Integration, Measured, Score, Test, Validation,
+    ValidationError, validate,
 };
 use phicam::matrix::Matrix;
 use phicam::model::{Extent, Kernel, Occlusion, converged};
@@ -86,8 +86,7 @@ pub(super) fn judged(
     };
     let test = Test {
         significance,
-        replicates: REPLICATES,
-        errors,
+        known: Certainty::new(errors, Some(REPLICATES)),
     };
     validate(scene, measured, against, test)
 }

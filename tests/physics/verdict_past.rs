@@ -1,6 +1,6 @@
 //! What `validate` says of light past what stands in the way, and of light that no model has.
 
-use phicam::lab::{Against, Errors, Integration, Measured, Test, Validation, validate};
+use phicam::lab::{Against, Certainty, Errors, Integration, Measured, Test, Validation, validate};
 use phicam::matrix::Matrix;
 use phicam::model::{Kernel, Occlusion};
 use phicam::num::statistics::binomial_interval;
@@ -21,8 +21,7 @@ fn judged(scene: &Scene, phi: &Matrix, seed: u64, occlusion: Occlusion) -> Valid
     };
     let test = Test {
         significance: 1e-3,
-        replicates: 32,
-        errors: Errors::Independent,
+        known: Certainty::new(Errors::Independent, Some(32)),
     };
     validate(scene, measured, against, test).unwrap()
 }
@@ -116,8 +115,7 @@ fn two_replicates_tell_no_deviation() {
     let phi = crate::verdict::right();
     let test = Test {
         significance: 1e-3,
-        replicates: 2,
-        errors: Errors::Independent,
+        known: Certainty::new(Errors::Independent, Some(2)),
     };
     let against = Against {
         kernel: Kernel::Physical,

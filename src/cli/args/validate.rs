@@ -28,7 +28,8 @@ pub(in crate::cli) struct ValidateArgs {
     /// Entries that do not count, of the same shape: those that are not 0
     #[arg(long, value_name = "FILE")]
     pub left_out: Option<PathBuf>,
-    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    /// Replicates from which --stderr was estimated, at least 2; those of fewer than 32 are pooled
+    /// over pixels and spots where these say more. Known errors unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
     pub replicates: Option<u32>,
     /// Which entries of --phi share their errors

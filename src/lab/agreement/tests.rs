@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::certainty::Certainty;
 use crate::num::stream::{Key, Sampling, Stream};
 
 const ROWS: usize = 40;
@@ -59,8 +60,7 @@ fn verdict(
         evidence,
         Test {
             significance,
-            replicates: REPLICATES,
-            errors,
+            known: Certainty::new(errors, Some(REPLICATES)),
         },
         None,
     )
@@ -113,8 +113,7 @@ fn entries_without_error_are_compared_to_rounding() {
     let zero = Matrix::zeros(2, 2);
     let test = Test {
         significance: 0.01,
-        replicates: 32,
-        errors: Errors::Independent,
+        known: Certainty::new(Errors::Independent, Some(32)),
     };
     for (value, agrees) in [
         (1.0, true),

@@ -4,8 +4,9 @@ use super::assumption::{Assumed, assumed};
 use super::quality::{qualities, ratios};
 use super::results::{Assumption, BrdfPlan, BrdfStudy};
 use crate::lab::agreement::agree;
+use crate::lab::certainty::Certainty;
 use crate::lab::error::LabError;
-use crate::lab::evidence::{Errors, Evidence, Test};
+use crate::lab::evidence::{Evidence, Test};
 use crate::lab::options::Opt;
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study};
@@ -111,8 +112,7 @@ impl BrdfTasks {
         let how = self.tracing()?;
         let test = Test {
             significance: self.plan.significance,
-            replicates: how.budget.blocks,
-            errors: Errors::of(how.estimator),
+            known: Certainty::of(&how),
         };
         let (mut agreement, _) = agree(evidence, test, None);
         agreement.kernel = Kernel::Physical.name().to_owned();

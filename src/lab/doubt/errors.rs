@@ -12,7 +12,7 @@ pub(super) const DETERMINED: f64 = 0.9;
 /// A χ²/dof below this, and as seldom by chance, is not that of independent noise.
 const CLOSE: f64 = 0.95;
 const SELDOM: f64 = 1e-6;
-/// What the integrals move is told from this part of a standard error on.
+/// What the integrals move is told from this part of a standard error on, both counted.
 const NOTABLE: f64 = 0.5;
 /// Standard errors larger by more than this are others.
 const LARGER: f64 = 1.1;
@@ -32,7 +32,7 @@ pub(super) fn shared(judged: &Judged) -> Option<String> {
 pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<String> {
     let known = judged.certainty?;
     let replicates = known.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
-    let estimated = if known.is_pooled {
+    let estimated = if known.pooled_from.is_some() {
         "even pooled over pixels and spots, are known as"
     } else {
         "were estimated"
@@ -47,18 +47,22 @@ pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<Strin
     })
 }
 
-/// Errors of the picture that know of noise alone, where the model's integrals move it as much.
-pub(super) fn integrated(judged: &Judged) -> Option<String> {
+/// Errors of the picture that are more the model's integrals than the photographs' noise.
+pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
     let fits = judged
         .fit
         .as_ref()
         .is_some_and(|fit| fit.fits && !fit.is_open());
-    let moved = judged.moved.filter(|moved| *moved > NOTABLE && fits)?;
-    Some(format!(
-        "what the integrals of the model may be off by moves an element by up to {} standard errors, which \
-         know of noise alone: they are TOO SMALL. More --elements are integrated more finely",
-        figure(moved, 2)
-    ))
+    let (moved, errors) = (judged.moved.as_ref()?, found.standard_error.as_ref()?);
+    let shares = moved.iter().zip(errors).map(|(moved, error)| moved / error);
+    let share = shares.fold(0.0, f64::max);
+    (share > NOTABLE && fits).then(|| {
+        format!(
+            "what the integrals of the model may be off by is up to {} of an element's standard error, in which \
+             it is counted beside the noise. More --elements are integrated more finely",
+            figure(share, 2)
+        )
+    })
 }
 
 /// Photographs closer to the picture than their errors let them be.

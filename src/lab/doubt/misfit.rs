@@ -20,11 +20,14 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
     }
     let fit = judged.fit.as_ref()?;
     if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
+        let counted = match &judged.moved {
+            Some(_) => "count both",
+            None => "know of noise alone: they are TOO SMALL",
+        };
         return Some(format!(
             "whether it fits CANNOT BE TOLD: it differs from the photographs by more than their noise ({}), \
              but by no more than the integrals of the model may be off (with that taken off χ²/dof {}). The \
-             errors of the picture know of noise alone: they are TOO SMALL. More --elements are integrated \
-             more finely",
+             errors of the picture {counted}. More --elements are integrated more finely",
             told(fit),
             significant(within, 3)
         ));

@@ -1,6 +1,6 @@
 use super::*;
 use crate::lab::agreement::agree;
-use crate::lab::evidence::Errors;
+use crate::lab::certainty::Certainty;
 use crate::lab::score::{Derivatives, Parameter};
 use crate::num::linalg::{Tolerance, pinv};
 use crate::num::stream::{Key, Sampling, Stream};
@@ -9,8 +9,7 @@ const ROWS: usize = 12;
 const COLUMNS: usize = 3;
 const TEST: Test = Test {
     significance: 0.01,
-    replicates: u32::MAX,
-    errors: Errors::Independent,
+    known: Certainty::STATED,
 };
 
 /// Of singular values: what depends on others is below it.

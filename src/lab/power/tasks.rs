@@ -2,8 +2,9 @@
 
 use super::results::{Power, PowerPlan};
 use super::verdicts::{Models, Verdicts, row, verdicts};
+use crate::lab::certainty::Certainty;
 use crate::lab::error::LabError;
-use crate::lab::evidence::{Errors, Test};
+use crate::lab::evidence::Test;
 use crate::lab::options::{ESTIMATORS, Opt, SAMPLERS};
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study, Work};
@@ -154,8 +155,7 @@ impl Study for PowerTasks {
         let how = self.tracing(estimator, samples, seed)?;
         let test = Test {
             significance: self.plan.significance,
-            replicates: how.budget.blocks,
-            errors: Errors::of(estimator),
+            known: Certainty::of(&how),
         };
         let spots = 0..self.scene.laser.spots.len();
         let traced = render(&self.scene, &how, spots, control)?;

@@ -210,7 +210,7 @@ pub(super) fn caption() -> String {
 mod tests {
     use super::super::case::published;
     use super::*;
-    use crate::lab::{Errors, Evidence, Test, agree};
+    use crate::lab::{Certainty, Errors, Evidence, Test, agree};
     use crate::model::Stagger;
 
     /// The published Φ with 64 × 64 elements in place of 8 × 8, whose sum is then the integral to
@@ -254,8 +254,7 @@ mod tests {
             };
             let test = Test {
                 significance: 1e-3,
-                replicates: 64,
-                errors: Errors::Independent,
+                known: Certainty::new(Errors::Independent, Some(64)),
             };
             let (found, _) = agree(evidence, test, None);
             assert!(found.agrees && found.chi2_per_dof > 0.8, "{found:?}");

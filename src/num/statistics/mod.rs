@@ -16,6 +16,6 @@ pub use chi_square::{chi_square_quantile, chi_square_sf};
 pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
 pub use fisher::fisher_sf;
-pub use gamma::{freedom_of_log_variance, trigamma};
+pub use gamma::{freedom_of_log_variance, pentagamma, trigamma};
 pub use normal::normal_two_sided;
 pub use student::{student_threshold, student_to_normal};

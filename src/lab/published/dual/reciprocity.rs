@@ -3,7 +3,7 @@
 use super::super::traced::REPLICATES;
 use super::pair::{Direction, Footprints, footprints};
 use crate::lab::LabError;
-use crate::lab::{Agreement, Errors, Evidence, Test, agree};
+use crate::lab::{Agreement, Certainty, Errors, Evidence, Test, agree};
 use crate::matrix::Matrix;
 
 /// Both renders are compared at this significance.
@@ -26,8 +26,7 @@ impl Reciprocity {
         // Two sets of 32 replicates: at least 31 degrees of freedom (Welch).
         let test = Test {
             significance: SIGNIFICANCE,
-            replicates: REPLICATES,
-            errors: Errors::Independent,
+            known: Certainty::new(Errors::Independent, Some(REPLICATES)),
         };
         let compare = |[a, a_error]: [&Matrix; 2], [b, b_error]: [&Matrix; 2], bound: &Matrix| {
             let stderr = a_error.zip_map(b_error, |x, y| (x * x + y * y).sqrt());

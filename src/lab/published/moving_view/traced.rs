@@ -9,7 +9,7 @@ use super::layout::{self, BOARDS, ELEMENTS, HALF_WIDTHS, PIXELS, View, board, sc
 use super::modelled::contrast_error;
 use super::system::System;
 use crate::lab::LabError;
-use crate::lab::{Against, Errors, Integration, Measured, Test, validate};
+use crate::lab::{Against, Certainty, Errors, Integration, Measured, Test, validate};
 use crate::matrix::Matrix;
 use crate::metrics::{mtf_raw, rmse};
 use crate::model::Kernel;
@@ -97,8 +97,7 @@ fn one(
         if spot % EVERY == 0 {
             let test = Test {
                 significance: SIGNIFICANCE / spots.div_ceil(EVERY) as f64,
-                replicates: REPLICATES,
-                errors: Errors::Independent,
+                known: Certainty::new(Errors::Independent, Some(REPLICATES)),
             };
             let verdict = validate(
                 &view.photograph(scene, spot)?,

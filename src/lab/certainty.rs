@@ -1,0 +1,133 @@
+//! What is known of standard errors.
+
+use crate::num::statistics::student_to_normal;
+use crate::transport::{Estimator, Plan};
+
+/// How the errors of traced entries hang together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Errors {
+    /// Every entry has its own random numbers.
+    Independent,
+    /// Entries of one pixel share theirs: only different rows are independent.
+    WithinRows,
+    /// All entries share theirs.
+    Everywhere,
+}
+
+/// A part that is common, times the spots, above which errors are no longer independent: 5 % of the
+/// error of their mean.
+const NOTICED: f64 = 0.1;
+
+impl Errors {
+    /// Every way.
+    pub const ALL: [Errors; 3] = [Self::Independent, Self::WithinRows, Self::Everywhere];
+
+    /// The name by which it is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::WithinRows => "pixel",
+            Self::Everywhere => "all",
+        }
+    }
+
+    /// Those of an estimator.
+    pub fn of(estimator: Estimator) -> Self {
+        match estimator {
+            Estimator::Independent => Self::Independent,
+            Estimator::Shared => Self::WithinRows,
+            Estimator::Factored => Self::Everywhere,
+        }
+    }
+
+    /// Those of photographs of `spots` spots, a part `common` of whose variance all spots of a
+    /// pixel have in common: the error of their mean is √(1 + c (l − 1)) times that of independent
+    /// ones.
+    pub fn of_common(common: f64, spots: usize) -> Self {
+        Self::of_photographs(common * spots as f64 > NOTICED)
+    }
+
+    /// Those of photographs, all spots of a pixel of which share some or not.
+    pub fn of_photographs(shares_by_pixel: bool) -> Self {
+        if shares_by_pixel {
+            Self::WithinRows
+        } else {
+            Self::Independent
+        }
+    }
+
+    /// Which entries share their errors, in words: a recovery adds up entries as if none did.
+    pub fn shared(self) -> Option<&'static str> {
+        match self {
+            Self::Independent => None,
+            Self::WithinRows => Some("all spots of a pixel share theirs"),
+            Self::Everywhere => Some("all entries share theirs"),
+        }
+    }
+}
+
+/// What is known of standard errors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certainty {
+    /// How the errors of the entries hang together.
+    pub errors: Errors,
+    /// Replicates from which each was estimated, or as from which it is known; none where they are
+    /// known.
+    pub replicates: Option<u32>,
+    /// Replicates from which each was estimated before those of pixels and spots were pooled; none
+    /// where they were not.
+    pub pooled_from: Option<u32>,
+}
+
+impl Certainty {
+    /// Errors of their own for all entries, their size known.
+    pub const STATED: Self = Self::new(Errors::Independent, None);
+
+    /// Errors that were each estimated from so many replicates.
+    pub const fn new(errors: Errors, replicates: Option<u32>) -> Self {
+        Self {
+            errors,
+            replicates,
+            pooled_from: None,
+        }
+    }
+
+    /// What a render leaves.
+    pub fn of(plan: &Plan) -> Self {
+        Self::new(Errors::of(plan.estimator), Some(plan.budget.blocks))
+    }
+
+    /// As from how many replicates errors are known where they were pooled.
+    pub fn pooled(self) -> Option<u32> {
+        self.pooled_from.and(self.replicates)
+    }
+
+    /// Degrees of freedom of each standard error; many where it is known.
+    pub(super) fn freedom(self) -> f64 {
+        freedom(self.replicates.unwrap_or(u32::MAX))
+    }
+
+    /// The standard normal deviate as improbable as a deviate over a standard error.
+    pub(super) fn normal(self, t: f64) -> f64 {
+        match self.replicates {
+            Some(_) => student_to_normal(t, self.freedom()),
+            None => t,
+        }
+    }
+
+    /// Degrees of freedom of the sum of so many squared deviates. Pooled errors share those of what
+    /// was pooled: of ν each the mean variance is known to 2/(ν N) of itself, and
+    ///
+    /// > Var Σz²/N = 2/N (1 + 1/ν)
+    pub(super) fn of_chi2(self, squares: f64) -> f64 {
+        match self.pooled_from.map(freedom) {
+            Some(own) => squares * own / (own + 1.0),
+            None => squares,
+        }
+    }
+}
+
+/// Degrees of freedom of a standard error from so many replicates.
+pub(super) fn freedom(replicates: u32) -> f64 {
+    f64::from(replicates.max(2) - 1)
+}
