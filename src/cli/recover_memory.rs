@@ -218,6 +218,7 @@ impl Strips<'_> {
             determined: None,
             certainty: Some(self.certainty),
             moved: None,
+            against: None,
         })
     }
 

@@ -49,7 +49,7 @@ pub use profile::Profile;
 use super::certainty::{Certainty, Errors};
 use super::error::LabError;
 use super::misplaced::normal;
-use super::pooled::Pooled;
+use super::refined::Refined;
 use super::unexplained::Unexplained;
 use super::validation::Integration;
 use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
@@ -62,6 +62,8 @@ use identified::identified;
 
 /// Below this probability of so bad a fit by noise alone more than noise is left.
 const LEVEL: f64 = 1e-3;
+/// The least that a parameter may be known to: its square has to be a number.
+const LEAST: f64 = 1e-12;
 /// Typical sizes of angles (degrees), percents, lengths over the distance to the view, and gains.
 const TYPICAL: [f64; 4] = [1.0, 1.0, 0.01, 0.01];
 
@@ -121,10 +123,11 @@ impl CalibrationPlan {
     ) -> Result<Calibration, LabError> {
         let known = Certainty::new(Errors::Independent, self.replicates);
         let stderr = photographs.stderr;
-        let pooled = stderr.and_then(|own| Pooled::of(own, known, photographs.left_out));
-        let known = pooled.as_ref().map_or(known, |own| own.certainty);
+        let of = |own| Refined::of(photographs.phi, own, known, photographs.left_out);
+        let refined = stderr.map(of);
+        let known = refined.as_ref().map_or(known, |own| own.certainty);
         let photographs = Unexplained {
-            stderr: pooled.as_ref().map(|own| &own.stderr).or(stderr),
+            stderr: refined.as_ref().map(|own| own.stderr.as_ref()),
             ..*photographs
         };
         let own = Self {
@@ -201,10 +204,30 @@ impl CalibrationPlan {
     fn parameters(&self, scene: &Scene) -> Result<(Vec<Parameter>, Vec<Option<f64>>), LabError> {
         let (mut parameters, mut priors): (Vec<Parameter>, Vec<Option<f64>>) = Default::default();
         for free in &self.free {
+            if free
+                .sigma
+                .is_some_and(|s| !(LEAST..=1.0 / LEAST).contains(&s))
+            {
+                return Err(LabError::Untold(format!(
+                    "{} is known to {:e}: give a standard deviation from {LEAST:e} to {:e}, or none",
+                    free.name,
+                    free.sigma.unwrap_or_default(),
+                    1.0 / LEAST
+                )));
+            }
             for own in Parameter::named(scene, &free.name)? {
-                if !parameters.iter().any(|p| p.name == own.name) {
-                    parameters.push(own);
-                    priors.push(free.sigma);
+                match parameters.iter().position(|p| p.name == own.name) {
+                    None => {
+                        parameters.push(own);
+                        priors.push(free.sigma);
+                    }
+                    Some(k) if priors[k] != free.sigma => {
+                        return Err(LabError::Untold(format!(
+                            "{} is free twice, known differently well: name it once",
+                            own.name
+                        )));
+                    }
+                    Some(_) => {}
                 }
             }
         }

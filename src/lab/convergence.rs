@@ -26,7 +26,7 @@ const GLOSSY: LabError = LabError::Unsuited(
 );
 /// Not numbers of paths to draw a line through.
 const TOO_FEW: LabError = LabError::Unsuited(
-    "the error needs at least two different numbers of samples, each from 1 to 2³²",
+    "the error needs at least two different numbers of samples, each from 1 to 2³² (give, e.g., --samples 64,256)",
 );
 
 /// `phicam study convergence`.
@@ -120,6 +120,12 @@ impl ConvergenceTasks {
     fn check(&self) -> Result<(), LabError> {
         if self.scene.hidden().any(|(_, s)| !s.is_lambertian()) {
             return Err(GLOSSY);
+        }
+        let mut samples = self.samples.clone();
+        samples.sort_unstable();
+        samples.dedup();
+        if samples.len() < 2 {
+            return Err(TOO_FEW);
         }
         let mut surfaces = self.scene.surfaces.iter();
         if surfaces.any(|s| s.role == Role::Occluder && !s.is_black()) {

@@ -94,9 +94,9 @@ pub(super) const STUDY: Registered = Registered {
         Opt::number("noise", "Noise of the photographs, relative to each entry")
             .or("0.01")
             .rule(
-                |x| x > 0.0 && x.is_finite(),
+                |x| x > 0.0 && x <= 1.0,
                 "has no meaning",
-                "use a number above 0, e.g. 0.01",
+                "use a number above 0, up to 1, e.g. 0.01",
             ),
         Opt::number(
             "confidence",

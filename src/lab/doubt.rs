@@ -1,5 +1,6 @@
 //! What speaks against believing a recovered picture, in words, each with its cure.
 
+mod contested;
 mod errors;
 mod misfit;
 
@@ -8,10 +9,13 @@ use super::fit::Judged;
 use super::gains::drifting;
 use crate::num::digits::{figure, significant};
 use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
+pub(super) use contested::contest;
+use contested::contested;
 use errors::{
-    DETERMINED, HALF, alike_untold, few_replicates, integrated, overstated, shared, undetermined,
+    DETERMINED, HALF, alike_untold, by_entries, few_replicates, integrated, overstated, shared,
+    undetermined,
 };
-use misfit::misfit;
+use misfit::{misfit, outlier};
 
 /// More than this share of the elements is most of them.
 const MOST: f64 = 0.5;
@@ -30,10 +34,13 @@ const ONE_OF_MANY: f64 = 0.05;
 /// All that speaks against `found`, gravest first; nothing where nothing does.
 pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
     let every = [
+        outlier(judged),
         misfit(found, judged),
+        contested(judged),
         unjudged(found, judged),
         shared(judged),
         few_replicates(found, judged),
+        by_entries(judged),
         integrated(found, judged),
         overstated(judged),
         impossible(found),

@@ -34,7 +34,7 @@ use super::certainty::{Certainty, Errors};
 use super::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::model::Factors;
-use crate::num::statistics::chi_square_sf;
+use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
 use crate::recovery::{Determined, Method, Options, Problem, Recovered, determined};
 pub use attainable::Attainable;
 use attainable::LeftOver;
@@ -46,6 +46,17 @@ const MOST_ELEMENTS: usize = 1024;
 
 /// Elements up to which what the photographs determine is computed.
 const MOST_DECOMPOSED: usize = 2048;
+
+/// An entry that noise does not explain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Outlier {
+    /// Pixel index.
+    pub pixel: usize,
+    /// Spot index.
+    pub spot: usize,
+    /// |z| of its difference from what the picture would photograph.
+    pub z: f64,
+}
 
 /// How well what was recovered explains the photographs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -67,6 +78,9 @@ pub struct Fit {
     /// χ²/(N − ν) less what the integrals of the model may be off by; none where the picture fits
     /// without, or nothing is known of them.
     pub within_integration: Option<f64>,
+    /// The entry farthest off, where chance hardly leaves any of all so far; absent elsewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outlier: Option<Outlier>,
     /// Replicates as from which the standard errors are known, where those of few were pooled over
     /// pixels and spots; absent where none were.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -98,6 +112,7 @@ pub struct Residuals {
     sums: Vec<f64>,
     entries: usize,
     left_out: usize,
+    farthest: Option<Outlier>,
 }
 
 impl Residuals {
@@ -116,6 +131,10 @@ impl Residuals {
                 let t = ((phi[at] - seen[at]) / stderr[at]).abs();
                 let z = certainty.normal(t);
                 sum += z * z;
+                if self.farthest.is_none_or(|own| z > own.z) {
+                    let (pixel, spot) = (self.sums.len(), l);
+                    self.farthest = Some(Outlier { pixel, spot, z });
+                }
             }
             self.sums.push(sum);
         }
@@ -145,6 +164,10 @@ impl Residuals {
             level: FIT_LEVEL,
             fits: p >= FIT_LEVEL,
             within_integration: None,
+            outlier: self.farthest.filter(|own| {
+                let by_chance = sidak_p(normal_two_sided(own.z), self.entries as u64);
+                certainty.errors == Errors::Independent && by_chance < FIT_LEVEL
+            }),
             pooled: certainty.pooled(),
         })
     }
@@ -179,7 +202,7 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
     let within = of(&nearest)?;
     Some(Fit {
         within_integration: Some(within.chi2_per_dof),
-        fits: within.fits,
+        fits: within.fits && within.outlier.is_none(),
         ..fit
     })
 }
@@ -199,6 +222,8 @@ pub struct Judged {
     pub certainty: Option<Certainty>,
     /// How far the integrals of the model may move each element; none where that is not known.
     pub moved: Option<DVector<f64>>,
+    /// Another method that fits as well, and how far its picture lies off, in the errors of both.
+    pub against: Option<(Method, f64)>,
 }
 
 impl Judged {
@@ -229,6 +254,7 @@ impl Judged {
             determined: few.then(|| determined(problem).ok()).flatten(),
             certainty: noise.map(|known| known.certainty),
             moved: None,
+            against: None,
         }
     }
 

@@ -192,6 +192,7 @@ mod preview;
 mod problem;
 pub mod published;
 mod recoveries;
+mod refined;
 mod registered;
 mod registry;
 mod residual;
@@ -237,7 +238,7 @@ pub use error::{LabError, StudyError};
 pub use evidence::{Evidence, FIT_LEVEL, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
-pub use fit::{Attainable, Fit, Judged, Residuals};
+pub use fit::{Attainable, Fit, Judged, Outlier, Residuals};
 pub use gains::{Deviations, Gains};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,

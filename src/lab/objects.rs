@@ -8,12 +8,12 @@ use std::ops::Range;
 
 use super::certainty::Certainty;
 use super::chosen::{Beside, Chosen, Ended, words};
-use super::doubt::doubts;
+use super::doubt::{contest, doubts};
 use super::fit::{Judged, Known};
 use super::likelier::likelier;
 use super::measures::Measures;
-use super::pooled::Pooled;
 use super::problem::problem;
+use super::refined::Refined;
 use super::study::Work;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
@@ -34,19 +34,14 @@ pub enum Noise<'a> {
 }
 
 impl<'a> Noise<'a> {
-    /// Standard errors from few replicates, pooled as far as they may be.
-    fn pooled(self, nuisance: Nuisance<'_>) -> Option<Pooled> {
+    /// Standard errors as well as the photographs tell them.
+    fn refined(self, phi: &Matrix, nuisance: Nuisance<'_>) -> Option<Refined<'a>> {
         match self {
             Self::StandardError(stderr, certainty) => {
-                Pooled::of(stderr, certainty, nuisance.left_out)
+                Some(Refined::of(phi, stderr, certainty, nuisance.left_out))
             }
             Self::Unknown => None,
         }
-    }
-
-    /// These in place of the estimates of single entries.
-    fn or(self, pooled: Option<&'a Pooled>) -> Self {
-        pooled.map_or(self, |own| Self::StandardError(&own.stderr, own.certainty))
     }
 
     fn known(self, model: &'a MatrixModel) -> Option<Known<'a>> {
@@ -72,7 +67,8 @@ pub struct Attempt {
 
 /// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and
 /// measures it against the true albedo at the element centres. `nuisance` is what else the
-/// photographs hold. Standard errors from few replicates are pooled over pixels and spots where
+/// photographs hold. Standard errors that follow from the noisy entries are taken by the light
+/// expected of these, and those from few replicates are pooled over pixels and spots where
 /// these say more. Methods that are not finished when `control` stops it are
 /// [`RecoveryError::Stopped`].
 pub fn recover_objects(
@@ -129,8 +125,11 @@ fn ready<T>(
     nuisance: Nuisance<'_>,
     act: impl FnOnce(Result<Problem<'_>, RecoveryError>, Noise<'_>) -> T,
 ) -> T {
-    let pooled = noise.pooled(nuisance);
-    let noise = noise.or(pooled.as_ref());
+    let refined = noise.refined(phi, nuisance);
+    let noise = match &refined {
+        Some(own) => Noise::StandardError(&own.stderr, own.certainty),
+        None => noise,
+    };
     let (grids, shared) = (counts(model), Shared::default());
     let stderr = noise.known(model).map(|known| known.stderr);
     let problem = || {
@@ -176,8 +175,15 @@ fn attempts(
     // Photographs that nothing explains are likeliest by no assumption.
     let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
     let first = likelier(&all).filter(|_| explained && any.shared().is_none());
-    let judged = |found: Recovered| {
-        let mut objects = measured(model, &found, &any.of(problem, known, (&found, options)));
+    let of = |own| any.of(problem, known, (own, options));
+    let mut judgements: Vec<Judged> = all.iter().map(|own| of(own)).collect();
+    let mut pairs: Vec<(&Recovered, &mut Judged)> =
+        all.iter().copied().zip(&mut judgements).collect();
+    contest(&mut pairs);
+    let mut judgements = judgements.into_iter();
+    let mut judged = |found: Recovered| {
+        let own = judgements.next().unwrap_or_default();
+        let mut objects = measured(model, &found, &own);
         let own = first.as_ref().filter(|(method, _)| *method == found.method);
         let words = own.map(|(_, words)| words.clone());
         objects
@@ -190,7 +196,7 @@ fn attempts(
         .zip(found)
         .map(|(&method, found)| Attempt {
             method,
-            outcome: found.map(judged),
+            outcome: found.map(&mut judged),
         })
         .collect()
 }

@@ -68,6 +68,7 @@ fn fit(chi2_per_dof: f64) -> Fit {
         level: 1e-3,
         fits: true,
         within_integration: None,
+        outlier: None,
         pooled: None,
     }
 }

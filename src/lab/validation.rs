@@ -12,7 +12,7 @@ use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::other_light::Left;
-use super::pooled::Pooled;
+use super::refined::Refined;
 use super::score::Derivatives;
 use super::unmodelled::unmodelled;
 
@@ -157,14 +157,17 @@ pub fn validate(
         integration,
         occlusion,
     } = against;
-    let integral = converged(
-        scene,
-        kernel,
-        Extent {
-            occlusion,
-            ..Extent::FULL
-        },
-    )?;
+    let extent = Extent {
+        occlusion,
+        ..Extent::FULL
+    };
+    if beside
+        .left_out
+        .is_some_and(|flags| flags.iter().all(|flag| *flag != 0.0))
+    {
+        return nothing_left(scene, measured, against, test);
+    }
+    let integral = converged(scene, kernel, extent)?;
     let (nodes, visible) = (integral.rough, integral.visible);
     let (mut phi, mut bound) = (integral.phi, integral.bound);
     let base = phi.clone();
@@ -173,13 +176,12 @@ pub fn validate(
         bound += (&centres - phi).abs();
         phi = centres;
     }
-    let pooled = Pooled::of(measured.stderr, test.known, beside.left_out);
-    let pooled = pooled.as_ref();
-    let known = pooled.map_or(test.known, |own| own.certainty);
+    let refined = Refined::of(measured.phi, measured.stderr, test.known, beside.left_out);
+    let known = refined.certainty;
     let test = Test { known, ..test };
     let evidence = Evidence {
         traced: measured.phi,
-        stderr: pooled.map_or(measured.stderr, |own| &own.stderr),
+        stderr: &refined.stderr,
         model: &phi,
         bound: Some(&bound),
         left_out: beside.left_out,
@@ -214,6 +216,34 @@ pub fn validate(
         agreement,
         z,
         model: phi,
+    })
+}
+
+/// The verdict where no entry counts: to no evidence integrals, which may take long, add none.
+fn nothing_left(
+    scene: &Scene,
+    measured: Measured<'_>,
+    against: Against,
+    test: Test,
+) -> Result<Validation, ValidationError> {
+    let model = MatrixModel::with(scene, against.kernel, None, against.occlusion)?.phi();
+    let evidence = Evidence {
+        traced: measured.phi,
+        stderr: measured.stderr,
+        model: &model,
+        bound: None,
+        left_out: measured.beside.left_out,
+        eliminated: None,
+    };
+    let (mut agreement, z) = agree(evidence, test, None);
+    against.kernel.name().clone_into(&mut agreement.kernel);
+    Integration::Centres
+        .name()
+        .clone_into(&mut agreement.integration);
+    Ok(Validation {
+        agreement,
+        z,
+        model,
     })
 }
 

@@ -13,7 +13,8 @@ use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, little_left, mirrored, no_light, roughly, stretched, unsaid,
+    bent, by_own_light, copied, little_left, mirrored, misread, no_light, roughly, stretched,
+    unsaid,
 };
 use crate::scene::Scene;
 
@@ -68,6 +69,7 @@ pub fn import(
     let view = &scene.camera.view;
     if placing.fitted.is_some() {
         warnings.extend(mirrored(&placing.mapping, &scene.camera));
+        warnings.extend(placing.fitted.as_ref().and_then(misread));
     } else {
         let extent = set.crop.map(|c| [c.width, c.height]);
         let extent = extent.unwrap_or(shots.size.map(|n| n as f64));
@@ -99,6 +101,12 @@ pub fn import(
             .clipped()
             .filter(|_| set.saturation.is_none()),
     );
+    warnings.extend(copied(
+        shots
+            .takes
+            .iter()
+            .filter_map(|take| reader.source(&take.path)),
+    ));
     let Placing {
         fitted, mapping, ..
     } = placing;

@@ -102,6 +102,11 @@ impl<'a> Reader<'a> {
         Ok(found)
     }
 
+    /// A file that was read.
+    pub(super) fn source(&self, path: &Path) -> Option<&SourceFile> {
+        self.sources.get(path)
+    }
+
     /// The files that were read, by name.
     pub(super) fn sources(self) -> Vec<SourceFile> {
         self.sources.into_values().collect()

@@ -1,15 +1,20 @@
 //! What a user of imported photographs has to know.
 
+use std::collections::BTreeMap;
+
 use super::footprints::Evenness;
 use super::left_out::LeftOut;
-use super::mapping::Mapping;
+use super::mapping::{Fitted, Mapping};
 use super::noise::PhotonTransferFit;
 use super::placing::Placing;
+use super::read::SourceFile;
 use super::set::Set;
 use crate::matrix::{Matrix, TOO_DARK};
 use crate::num::digits::figure;
 use crate::scene::Camera;
 
+/// Error of a mark, px, above which it was not read where it is.
+const MISREAD: f64 = 1.0;
 /// Probability of the photon transfer line below which it is said not to fit.
 const FITS: f64 = 1e-3;
 /// How far from square the pixels of a view without marks may be.
@@ -69,6 +74,41 @@ pub(super) fn mirrored(mapping: &Mapping, camera: &Camera) -> Option<String> {
     ((a * d - b * c) * front > 0.0).then(|| {
         "the marks show the wall as in a mirror, which no camera on its side of it sees: check the order of their pixels and places, and whether the photographs are mirrored".to_owned()
     })
+}
+
+/// That marks do not lie where any mapping has them.
+pub(super) fn misread(fitted: &Fitted) -> Option<String> {
+    let error = fitted.mark_error.filter(|error| *error > MISREAD)?;
+    let each = fitted.residuals.iter().enumerate();
+    let (worst, off) = each.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    Some(format!(
+        "the marks lie {} px off where the mapping has them, the {}. of the list {} px: check its pixel and place, \
+         and the scene's camera and lens; what that moves of the light is in no standard error",
+        figure(error, 2),
+        worst + 1,
+        figure(*off, 2)
+    ))
+}
+
+/// That files of different photographs are the same to the byte.
+pub(super) fn copied<'a>(takes: impl Iterator<Item = &'a SourceFile>) -> Option<String> {
+    let mut first: BTreeMap<&str, &str> = BTreeMap::new();
+    let mut same = Vec::new();
+    for file in takes {
+        match first.get(file.sha256.as_str()) {
+            Some(earlier) if *earlier == file.name => {}
+            Some(earlier) => same.push(format!("{} as {earlier}", file.name)),
+            None => {
+                first.insert(&file.sha256, &file.name);
+            }
+        }
+    }
+    let example = same.first()?;
+    Some(format!(
+        "{} photographs are the same files as others ({example}), which noise never makes them: one was copied in \
+         place of another, and its spot or its repeats tell nothing",
+        same.len()
+    ))
 }
 
 /// That gains are known roughly, `most` of themselves at the most.
@@ -144,6 +184,45 @@ pub(super) fn bent(line: &PhotonTransferFit) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::photographs::mapping::Mark;
+
+    /// Marks of a perspective, one of twelve of which is read 30 px beside its place: it is named.
+    /// With all where they are nothing is said.
+    #[test]
+    fn a_mark_that_was_misread_is_named() {
+        let place = |k: usize| [0.2 + 0.3 * (k % 4) as f64, 0.1 + 0.4 * (k / 4) as f64];
+        let marks = |off: f64| -> Vec<Mark> {
+            (0..12)
+                .map(|k| {
+                    let [x, y] = place(k);
+                    let w = 1.0 + 0.2 * x + 0.1 * y;
+                    let beside = if k == 6 { off } else { 0.0 };
+                    Mark {
+                        pixel: [(100.0 + 300.0 * x) / w + beside, (900.0 - 400.0 * y) / w],
+                        wall: [x, y],
+                    }
+                })
+                .collect()
+        };
+        let told = |off| misread(&Mapping::from_marks(&marks(off), None).unwrap());
+        assert_eq!(told(0.0), None);
+        let words = told(30.0).unwrap();
+        assert!(words.contains("the 7. of the list"), "{words}");
+    }
+
+    /// A file that stands twice under two names is told, and one that is read twice is not.
+    #[test]
+    fn a_copied_photograph_is_told() {
+        let file = |name: &str, sha256: &str| SourceFile {
+            name: name.to_owned(),
+            bytes: 3,
+            sha256: sha256.to_owned(),
+        };
+        let [a, b, c] = [file("1.png", "x"), file("2.png", "y"), file("3.png", "x")];
+        assert_eq!(copied([&a, &b, &a].into_iter()), None);
+        let words = copied([&a, &b, &c].into_iter()).unwrap();
+        assert!(words.contains("3.png as 1.png"), "{words}");
+    }
 
     /// Pixels of a view of 3 × 2 that fills 300 × 200 px are square, of 4 × 2 a third wider.
     #[test]

@@ -209,7 +209,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Σ_j ρ_j A_j, W.
-    pub(super) fn light(&self, reflectance: &DVector<f64>) -> DMatrix<f64> {
+    pub fn light(&self, reflectance: &DVector<f64>) -> DMatrix<f64> {
         let (c, d, element) = self.sides();
         let of_terms: Vec<f64> = element.iter().map(|j| reflectance[*j]).collect();
         // The lesser side is copied.

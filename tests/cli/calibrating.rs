@@ -95,6 +95,14 @@ fn uncertainties_stand_in_the_scene() {
     w.refuses("calibrate run --free hidden.u", &["own plane"]);
     w.refuses("calibrate run --free hinge.angle=-1", &["NAME=SIGMA"]);
     w.refuses(
+        "calibrate run --free hinge.angle=0.5,hinge.angle=0.001 --elements 2x2",
+        &["hinge.angle is free twice", "once"],
+    );
+    w.refuses(
+        "calibrate run --free hinge.angle=1e-300 --elements 2x2",
+        &["hinge.angle", "from 1e-12 to 1e12"],
+    );
+    w.refuses(
         "calibrate run --free laser.x --elements 2x2",
         &["do not tell", "laser.x"],
     );

@@ -47,6 +47,16 @@ pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<Strin
     })
 }
 
+/// Errors of the photographs that noise has made smaller where it has made entries darker.
+pub(super) fn by_entries(judged: &Judged) -> Option<String> {
+    judged.certainty?.follows_entries.then(|| {
+        "the standard errors of the photographs follow from their noisy entries (√n of counts, a share \
+         of each): entries that noise has made darker count more, and the picture comes out too dark. Of \
+         fewer than 8 pixels or spots it is not known what light to expect; give errors of the mean light"
+            .to_owned()
+    })
+}
+
 /// Errors of the picture that are more the model's integrals than the photographs' noise.
 pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
     let fits = judged

@@ -12,6 +12,19 @@ fn told(fit: &Fit) -> String {
     )
 }
 
+/// An entry that noise does not explain, whatever the others say.
+pub(super) fn outlier(judged: &Judged) -> Option<String> {
+    let far = judged.fit.as_ref()?.outlier?;
+    Some(format!(
+        "the entry of pixel {} and spot {} lies {} standard errors off what the picture would photograph, which \
+         chance leaves to none of all: a hot or dead pixel, a reflection, a cosmic ray. It moves the picture. Look \
+         at it, and leave it out (--left-out)",
+        far.pixel,
+        far.spot,
+        significant(far.z, 3)
+    ))
+}
+
 /// Photographs and model that contradict each other, or a picture that does not explain them though
 /// another does.
 pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
@@ -79,7 +92,8 @@ fn cure(method: Method) -> &'static str {
         }
         Method::JointTv => "Lower --tv, or use joint",
         Method::JointTwoValued => {
-            "There are more than two values, or the search has missed the pattern: use joint, or give \
+            "There are more than two values, or the search has missed the pattern, or the noise is not \
+             of one size, which is supposed where none is stated (--noise, --stderr): use joint, or give \
              the --levels"
         }
         Method::Joint | Method::Nnls | Method::JointUnbounded | Method::JointGp => {

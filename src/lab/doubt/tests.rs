@@ -2,6 +2,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::*;
 use crate::lab::ensemble::Photographs;
+use crate::lab::fit::Fit;
 use crate::lab::misplaced::normal;
 use crate::lab::study::tests::small;
 use crate::lab::{Certainty, Noise, RecoveredObject, Work, recover_objects};
@@ -367,4 +368,78 @@ fn methods_that_are_finished_are_kept() {
     let last = found[2].outcome.as_ref().unwrap_err();
     assert!(last.to_string().contains("stopped"), "{last}");
     assert_eq!(told.load(Ordering::Relaxed), 3 * Work::EACH_METHOD);
+}
+
+/// One entry of all is 10 standard errors too bright: it is named, and without it none is.
+#[test]
+fn an_entry_that_noise_does_not_explain_is_named() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
+    let right = Photographs::relative(&model.phi(), 1e-3, 4);
+    for off in [0.0, 10.0] {
+        let mut phi = right.phi.clone();
+        phi[(5, 3)] += off * right.stderr[(5, 3)];
+        for (method, outcome) in by_every_method(&model, &phi, Some(&right.stderr)) {
+            let Ok(object) = outcome else { continue };
+            let named = |w: &&String| w.contains("the entry of pixel 5 and spot 3 lies");
+            let told = object.warnings.iter().filter(named).count();
+            let fits = object
+                .fit
+                .as_ref()
+                .is_some_and(|fit| fit.chi2_per_dof < 5.0);
+            assert!(
+                told == usize::from(off > 0.0 && fits) || !fits,
+                "{method} {off}: {:?}",
+                object.warnings
+            );
+        }
+    }
+}
+
+/// Two pictures of the same photographs that lie apart by more than their errors are both
+/// contested; where one is far likelier, the other alone; and those that agree are not.
+#[test]
+fn pictures_that_contradict_each_other_are_told() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
+    let right = Photographs::relative(&model.phi(), 1e-3, 4);
+    let problem = crate::lab::problem::problem(&model, &right.phi, Some(&right.stderr)).unwrap();
+    let grids = [[2, 2]];
+    let problem = problem.with_grids(&grids).unwrap();
+    let methods = [Method::JointGp, Method::JointUnbounded];
+    let found = methods.map(|m| crate::recovery::recover(m, &problem, &Options::default()));
+    let mut found = found.map(Result::unwrap);
+    let fit = Fit {
+        chi2_per_dof: 1.0,
+        dof: 200.0,
+        p: 0.5,
+        entries: 200,
+        left_out: 0,
+        level: 1e-3,
+        fits: true,
+        within_integration: None,
+        outlier: None,
+        pooled: None,
+    };
+    let contested = |found: &[Recovered; 2]| {
+        let mut judged = [(); 2].map(|()| Judged {
+            fit: Some(fit.clone()),
+            ..Judged::default()
+        });
+        let [a, b] = &mut judged;
+        contest(&mut [(&found[0], a), (&found[1], b)]);
+        judged.map(|j| j.against.map(|(method, _)| method))
+    };
+    assert_eq!(contested(&found), [None, None]);
+    let errors = found[0].standard_error.clone().unwrap();
+    found[0].reflectance += errors * 10.0;
+    let [gp, unbounded] = [Some(Method::JointGp), Some(Method::JointUnbounded)];
+    assert_eq!(contested(&found), [unbounded, gp]);
+    for (ahead, expected) in [
+        (5.0, [unbounded, gp]),
+        (20.0, [None, gp]),
+        (-20.0, [unbounded, None]),
+    ] {
+        found[0].log_evidence = Some(-3.0);
+        found[1].log_evidence = Some(-3.0 - ahead);
+        assert_eq!(contested(&found), expected, "{ahead}");
+    }
 }

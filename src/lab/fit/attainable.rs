@@ -136,6 +136,7 @@ impl LeftOver {
             level: FIT_LEVEL,
             fits: false,
             within_integration: None,
+            outlier: None,
             pooled: None,
         })
     }

@@ -1,0 +1,123 @@
+use super::*;
+use crate::lab::misplaced::normal;
+use crate::lab::pooled::tests::repeated;
+use crate::lab::{
+    Against, Certainty, Errors, Integration, Measured, Noise, Test, recover_objects, validate,
+};
+use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
+use crate::num::control::Control;
+use crate::recovery::{Method, Nuisance, Options};
+use crate::scene::Scene;
+
+fn law(powers: &[f64; 3], x: f64) -> f64 {
+    powers[0] + powers[1] * x + powers[2] * x * x
+}
+
+/// Errors that follow from the entries by any law are those of the light, to what its expectation
+/// is known; those of the light itself, of a constant and of no law stay as they are, and of few
+/// pixels it is known that nothing can be done.
+#[test]
+fn errors_of_noisy_entries_are_those_of_their_light() {
+    let light = Matrix::from_fn(60, 40, |p, l| 100.0 + 3.0 * p as f64 + 2.0 * l as f64);
+    for powers in [[0.0, 1.0, 0.0], [0.0, 0.0, 0.01], [50.0, 0.5, 1e-3]] {
+        let right = light.map(|x| law(&powers, x).sqrt());
+        let mut draw = normal(3);
+        let phi = light.zip_map(&right, |x, s| x + s * draw()[0]);
+        let own = phi.map(|x| law(&powers, x).sqrt());
+        let refined = Refined::of(&phi, &own, Certainty::STATED, None);
+        let off = |stderr: &Matrix| {
+            let each = stderr.zip_map(&right, |a, b| (a / b - 1.0) * (a / b - 1.0));
+            each.mean().sqrt()
+        };
+        let [before, after] = [off(&own), off(&refined.stderr)];
+        assert!(after < 0.35 * before, "{powers:?}: {before} {after}");
+        assert!(!refined.certainty.follows_entries);
+        let kept = |phi: &Matrix, stderr: &Matrix| {
+            let refined = Refined::of(phi, stderr, Certainty::STATED, None);
+            refined.stderr.as_ref() == stderr && !refined.certainty.follows_entries
+        };
+        assert!(kept(&phi, &right));
+        assert!(kept(&phi, &phi.map(|_| 3.0)));
+        let [few, errors] = [&phi, &own].map(|m| m.rows(0, 4).into_owned());
+        let few = Refined::of(&few, &errors, Certainty::STATED, None);
+        assert!(few.certainty.follows_entries);
+    }
+}
+
+/// One element from counts of 10 electrons an entry with √n for errors, 20 draws: the mean of what
+/// is found is right within 4 of its standard errors. By √n as it stands a weighted mean of counts
+/// of mean μ is μ − 1, 10 % too dark.
+#[test]
+fn counts_with_the_roots_of_counts_are_not_too_dark() {
+    let mut scene = Scene::load("bench").unwrap();
+    [scene.camera.columns, scene.camera.rows] = [8; 2];
+    let model = MatrixModel::new(&scene, Kernel::Physical, Some([1, 1])).unwrap();
+    let exact = model.phi();
+    let electron = exact.mean() / 10.0;
+    let (mut sum, mut known) = (0.0, 0.0);
+    for seed in 0..20 {
+        let mut draw = normal(50 + seed);
+        // Counts of mean μ, rounded from a normal number of that mean and variance; 1 at least.
+        let counts = exact.map(|x| {
+            let mean = x / electron;
+            (mean + mean.sqrt() * draw()[0]).round().max(1.0)
+        });
+        let stderr = counts.map(|n| n.sqrt() * electron);
+        let found = recover_objects(
+            &model,
+            &(counts * electron),
+            Noise::StandardError(&stderr, Certainty::STATED),
+            Nuisance::default(),
+            &[Method::JointGp],
+            &Options::default(),
+            Control::none(),
+        );
+        let found = &found[0].outcome.as_ref().unwrap()[0];
+        sum += found.reflectance[0] / model.albedo[0] - 1.0;
+        known += found.standard_error.as_ref().unwrap()[0] / model.albedo[0];
+    }
+    let (off, error) = (sum / 20.0, known / 20.0 / 20.0_f64.sqrt());
+    assert!(off.abs() < 4.0 * error, "{off} {error}");
+}
+
+/// The verdict on right light from 3 photographs a spot knows its errors as from many more, and so
+/// fits the deviations of the scene; on light whose spots lie 0.1 in. beside it finds these. By √n
+/// of counts of 20 right light is not refuted.
+#[test]
+fn a_verdict_takes_errors_as_well_as_photographs_tell_them() {
+    let mut scene = Scene::load("bench").unwrap();
+    [scene.camera.columns, scene.camera.rows] = [8; 2];
+    let against = Against {
+        kernel: Kernel::Physical,
+        integration: Integration::Quadrature,
+        occlusion: Occlusion::Ignored,
+    };
+    let judged = |scene: &Scene, [phi, stderr]: [&Matrix; 2], replicates: Option<u32>| {
+        let test = Test {
+            significance: 1e-3,
+            known: Certainty::new(Errors::Independent, replicates),
+        };
+        let measured = Measured::new(phi, stderr, None);
+        validate(scene, measured, against, test).unwrap().agreement
+    };
+    let exact = converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED)
+        .unwrap()
+        .phi;
+    let [phi, stderr] = repeated(&exact, &exact.map(|x| 0.01 * x), 3, 11);
+    let right = judged(&scene, [&phi, &stderr], Some(3));
+    assert!(right.agrees && right.score.is_some(), "{right:?}");
+    assert!(right.pooled.is_some_and(|n| n > 10), "{:?}", right.pooled);
+    let moved = scene.with_shifted_spots([0.1, 0.0]).unwrap();
+    let wrong = judged(&moved, [&phi, &stderr], Some(3));
+    assert!(!wrong.agrees && wrong.verdict().contains("DISAGREE"));
+    let mut draw = normal(21);
+    let electron = exact.mean() / 20.0;
+    let counts = exact.map(|x| {
+        (x / electron + (x / electron).sqrt() * draw()[0])
+            .round()
+            .max(1.0)
+    });
+    let (phi, stderr) = (&counts * electron, counts.map(|n| n.sqrt() * electron));
+    let right = judged(&scene, [&phi, &stderr], None);
+    assert!(right.agrees, "{}", right.verdict());
+}
