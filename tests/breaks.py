@@ -306,7 +306,7 @@ BREAKS = [
     ),
     Break(
         "Every method warns of photographs that are not of this scene",
-        "src/lab/fit.rs",
+        "src/lab/fit/residuals.rs",
         "fits: p >= FIT_LEVEL,",
         "fits: true,",
         "lib",
@@ -315,7 +315,7 @@ BREAKS = [
     ),
     Break(
         "A right recovery is called refuted as often as stated",
-        "src/lab/fit.rs",
+        "src/lab/fit/residuals.rs",
         "sum += z * z;",
         "sum += 1.1 * z * z;",
         "lib",
@@ -1323,9 +1323,9 @@ BREAKS = [
     ),
     Break(
         "An entry that noise does not explain is named",
-        "src/lab/fit.rs",
-        "is_none_or(|own| z > own.z)",
-        "is_none_or(|own| z < own.z)",
+        "src/lab/fit/residuals.rs",
+        "z > FAR && self.far.len() <= MOST_FAR",
+        "z < FAR && self.far.len() <= MOST_FAR",
         "lib",
         "lab::doubt::tests::an_entry_that_noise_does_not_explain_is_named",
         10,

@@ -130,11 +130,7 @@ impl CalibrationPlan {
             stderr: refined.as_ref().map(|own| own.stderr.as_ref()),
             ..*photographs
         };
-        let own = Self {
-            replicates: known.replicates,
-            ..self.clone()
-        };
-        own.search(scene, &photographs, control)
+        self.search(scene, &photographs, known, control)
     }
 
     /// From all starts to the estimate.
@@ -142,6 +138,7 @@ impl CalibrationPlan {
         &self,
         scene: &Scene,
         photographs: &Unexplained<'_>,
+        known: Certainty,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
         let (parameters, mut priors) = self.parameters(scene)?;
@@ -198,7 +195,7 @@ impl CalibrationPlan {
             });
             (control.progress)(1);
         }
-        self.finish(&problem, (&model, told, untold), ends)
+        self.finish(&problem, (&model, told, untold), (ends, known))
     }
 
     fn parameters(&self, scene: &Scene) -> Result<(Vec<Parameter>, Vec<Option<f64>>), LabError> {

@@ -1,6 +1,6 @@
 //! What is known of standard errors.
 
-use crate::num::statistics::student_to_normal;
+use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::transport::{Estimator, Plan};
 
 /// How the errors of traced entries hang together.
@@ -128,6 +128,19 @@ impl Certainty {
             None => squares,
         }
     }
+
+    /// Probability of as large a sum χ² of squared deviates over standard errors by noise alone. Of
+    /// errors of ν > 4 degrees of freedom each square is that of Student's t, of mean ν/(ν − 2) and
+    /// variance 2 (ν − 1)/(ν − 4) times the square of that: χ² is compared as one of that mean and
+    /// variance.
+    pub(super) fn by_noise(self, chi2: f64, dof: f64) -> f64 {
+        let (all, nu) = (self.of_chi2(dof), self.freedom());
+        let [mean, fewer] = match self.replicates {
+            Some(_) if nu > 4.0 => [nu / (nu - 2.0), all * (nu - 4.0) / (nu - 1.0)],
+            _ => [1.0, all],
+        };
+        chi_square_sf(chi2 / dof / mean * fewer, fewer)
+    }
 }
 
 /// Degrees of freedom of a standard error from so many replicates.
@@ -138,7 +151,7 @@ pub(super) fn freedom(replicates: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::num::statistics::{chi_square_sf, fisher_sf};
+    use crate::num::statistics::fisher_sf;
 
     /// N squares over one variance that was pooled from ν degrees of freedom each have the law of
     /// Fisher of N and ν N: of 400 entries from 3 replicates 5 % lie where χ² says 5 %, to a tenth

@@ -16,7 +16,7 @@
 //! numbers leave over ([`LeftOver`]).
 //!
 //! χ²/(N − ν) is compared with χ² of N − ν degrees of freedom where entries are independent, of
-//! fewer where those of a row are not, of one where all hang together ([`Errors`]).
+//! fewer where those of a row are not, of one where all hang together ([`Errors`](super::Errors)).
 //!
 //! A picture that is refuted so is held against the photographs once more, |Φ − Φ̂| less what the
 //! last steps of the model's integrals move of Φ̂ ([`Factors::moved`]): what these leave over is no
@@ -24,21 +24,20 @@
 
 mod attainable;
 mod integrated;
+mod residuals;
 
 use serde::Serialize;
 
 use nalgebra::DVector;
 
-use super::agreement::freedom_of_rows;
-use super::certainty::{Certainty, Errors};
-use super::evidence::FIT_LEVEL;
+use super::certainty::Certainty;
 use crate::matrix::Matrix;
 use crate::model::Factors;
-use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
 use crate::recovery::{Determined, Method, Options, Problem, Recovered, determined};
 pub use attainable::Attainable;
 use attainable::LeftOver;
 pub(super) use attainable::ROUGH;
+pub use residuals::{Outlier, Residuals};
 
 /// Elements up to which the best picture of all is looked for where no method that was asked for
 /// gives it.
@@ -46,17 +45,6 @@ const MOST_ELEMENTS: usize = 1024;
 
 /// Elements up to which what the photographs determine is computed.
 const MOST_DECOMPOSED: usize = 2048;
-
-/// An entry that noise does not explain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Outlier {
-    /// Pixel index.
-    pub pixel: usize,
-    /// Spot index.
-    pub spot: usize,
-    /// |z| of its difference from what the picture would photograph.
-    pub z: f64,
-}
 
 /// How well what was recovered explains the photographs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -78,7 +66,7 @@ pub struct Fit {
     /// χ²/(N − ν) less what the integrals of the model may be off by; none where the picture fits
     /// without, or nothing is known of them.
     pub within_integration: Option<f64>,
-    /// The entry farthest off, where chance hardly leaves any of all so far; absent elsewhere.
+    /// The entry farthest off, where chance hardly leaves any of all so far, and all others fit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outlier: Option<Outlier>,
     /// Replicates as from which the standard errors are known, where those of few were pooled over
@@ -104,73 +92,6 @@ pub(super) struct Known<'a> {
     pub certainty: Certainty,
     /// The light of the elements, where it was integrated.
     pub factors: Option<&'a Factors>,
-}
-
-/// Squared deviates, summed row after row.
-#[derive(Debug, Default)]
-pub struct Residuals {
-    sums: Vec<f64>,
-    entries: usize,
-    left_out: usize,
-    farthest: Option<Outlier>,
-}
-
-impl Residuals {
-    /// Adds rows (pixels): the photographs, what the picture would photograph, and the standard
-    /// errors, W.
-    pub fn add(&mut self, phi: &Matrix, seen: &Matrix, stderr: &Matrix, certainty: Certainty) {
-        for p in 0..phi.nrows() {
-            let mut sum = 0.0;
-            for l in 0..phi.ncols() {
-                let at = (p, l);
-                if stderr[at] <= 0.0 {
-                    self.left_out += 1;
-                    continue;
-                }
-                self.entries += 1;
-                let t = ((phi[at] - seen[at]) / stderr[at]).abs();
-                let z = certainty.normal(t);
-                sum += z * z;
-                if self.farthest.is_none_or(|own| z > own.z) {
-                    let (pixel, spot) = (self.sums.len(), l);
-                    self.farthest = Some(Outlier { pixel, spot, z });
-                }
-            }
-            self.sums.push(sum);
-        }
-    }
-
-    /// The fit of a picture that used up so many degrees of freedom; none where no entry has a
-    /// standard error, and where the picture has as many unknowns as there are entries.
-    pub fn fit(&self, used: f64, certainty: Certainty) -> Option<Fit> {
-        let entries = self.entries as f64;
-        let left = entries - used;
-        if left < 0.5 {
-            return None;
-        }
-        let chi2_per_dof = self.sums.iter().sum::<f64>() / left;
-        let dof = match certainty.errors {
-            Errors::Independent => certainty.of_chi2(left),
-            Errors::WithinRows => freedom_of_rows(&self.sums, self.entries) * left / entries,
-            Errors::Everywhere => 1.0,
-        };
-        let p = chi_square_sf(chi2_per_dof * dof, dof);
-        Some(Fit {
-            chi2_per_dof,
-            dof,
-            p,
-            entries: self.entries,
-            left_out: self.left_out,
-            level: FIT_LEVEL,
-            fits: p >= FIT_LEVEL,
-            within_integration: None,
-            outlier: self.farthest.filter(|own| {
-                let by_chance = sidak_p(normal_two_sided(own.z), self.entries as u64);
-                certainty.errors == Errors::Independent && by_chance < FIT_LEVEL
-            }),
-            pooled: certainty.pooled(),
-        })
-    }
 }
 
 /// The fit of `found` to the photographs of `problem`.
@@ -203,6 +124,7 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
     Some(Fit {
         within_integration: Some(within.chi2_per_dof),
         fits: within.fits && within.outlier.is_none(),
+        outlier: within.outlier.or(fit.outlier),
         ..fit
     })
 }

@@ -34,14 +34,22 @@ pub enum Noise<'a> {
 }
 
 impl<'a> Noise<'a> {
-    /// Standard errors as well as the photographs tell them.
-    fn refined(self, phi: &Matrix, nuisance: Nuisance<'_>) -> Option<Refined<'a>> {
-        match self {
-            Self::StandardError(stderr, certainty) => {
-                Some(Refined::of(phi, stderr, certainty, nuisance.left_out))
-            }
-            Self::Unknown => None,
-        }
+    /// Standard errors as well as the photographs tell them to these methods.
+    fn refined(
+        self,
+        phi: &Matrix,
+        nuisance: Nuisance<'_>,
+        methods: &[Method],
+    ) -> Option<Refined<'a>> {
+        let Self::StandardError(stderr, known) = self else {
+            return None;
+        };
+        let left_out = nuisance.left_out;
+        Some(if methods.iter().any(|method| method.is_joint()) {
+            Refined::of(phi, stderr, known, left_out)
+        } else {
+            Refined::of_replicates(stderr, known, left_out)
+        })
     }
 
     fn known(self, model: &'a MatrixModel) -> Option<Known<'a>> {
@@ -80,9 +88,12 @@ pub fn recover_objects(
     options: &Options,
     control: Control<'_>,
 ) -> Vec<Attempt> {
-    ready(model, (phi, noise), nuisance, |problem, noise| {
-        attempts(model, &problem, noise, methods, options, control)
-    })
+    ready(
+        model,
+        (phi, noise),
+        (nuisance, methods),
+        |problem, noise| attempts(model, &problem, noise, methods, options, control),
+    )
 }
 
 /// The same with Φ in the singular directions of the model's laser side, and, where one of
@@ -101,16 +112,21 @@ pub fn recover_with_picards(
     options: &Options,
     control: Control<'_>,
 ) -> (Vec<Attempt>, Result<Vec<Picard>, RecoveryError>) {
-    ready(model, (phi, noise), nuisance, |problem, noise| {
-        let attempts = attempts(model, &problem, noise, methods, options, control);
-        // What has not been decomposed by then takes as long as a method.
-        let picards = if control.stopped() {
-            Ok(Vec::new())
-        } else {
-            problem.and_then(|problem| picards(&problem, methods, options))
-        };
-        (attempts, picards)
-    })
+    ready(
+        model,
+        (phi, noise),
+        (nuisance, methods),
+        |problem, noise| {
+            let attempts = attempts(model, &problem, noise, methods, options, control);
+            // What has not been decomposed by then takes as long as a method.
+            let picards = if control.stopped() {
+                Ok(Vec::new())
+            } else {
+                problem.and_then(|problem| picards(&problem, methods, options))
+            };
+            (attempts, picards)
+        },
+    )
 }
 
 /// Elements along u and v of each surface.
@@ -122,10 +138,10 @@ fn counts(model: &MatrixModel) -> Vec<[usize; 2]> {
 fn ready<T>(
     model: &MatrixModel,
     (phi, noise): (&Matrix, Noise<'_>),
-    nuisance: Nuisance<'_>,
+    (nuisance, methods): (Nuisance<'_>, &[Method]),
     act: impl FnOnce(Result<Problem<'_>, RecoveryError>, Noise<'_>) -> T,
 ) -> T {
-    let refined = noise.refined(phi, nuisance);
+    let refined = noise.refined(phi, nuisance, methods);
     let noise = match &refined {
         Some(own) => Noise::StandardError(&own.stderr, own.certainty),
         None => noise,

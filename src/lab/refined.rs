@@ -36,7 +36,8 @@ pub(super) struct Refined<'a> {
 }
 
 impl<'a> Refined<'a> {
-    /// Those of the entries of `phi` that are not `left_out`.
+    /// Those of the entries of `phi` that are not `left_out`, where entries are weighed by them one
+    /// by one.
     pub(super) fn of(
         phi: &Matrix,
         stderr: &'a Matrix,
@@ -59,6 +60,15 @@ impl<'a> Refined<'a> {
                 },
             };
         }
+        Self::of_replicates(stderr, certainty, left_out)
+    }
+
+    /// The same whatever the entries, of methods that work pixel by pixel: they weigh none.
+    pub(super) fn of_replicates(
+        stderr: &'a Matrix,
+        certainty: Certainty,
+        left_out: Option<&Matrix>,
+    ) -> Self {
         match Pooled::of(stderr, certainty, left_out) {
             Some(own) => Self {
                 stderr: Cow::Owned(own.stderr),

@@ -6,6 +6,7 @@ use super::{
     Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
     Starts, profile,
 };
+use crate::lab::certainty::Certainty;
 use crate::lab::error::LabError;
 use crate::lab::located::Grid;
 use crate::lab::validation::Integration;
@@ -13,7 +14,6 @@ use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_raw};
 use crate::model::MatrixModel;
 use crate::num::linalg::Cholesky;
-use crate::num::statistics::chi_square_sf;
 use crate::store::digest_of;
 
 /// Starts that end within so many standard errors of each other agree.
@@ -24,7 +24,7 @@ impl CalibrationPlan {
         &self,
         problem: &Problem<'_>,
         (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
-        mut ends: Vec<End>,
+        (mut ends, known): (Vec<End>, Certainty),
     ) -> Result<Calibration, LabError> {
         ends.sort_by(|a, b| a.total.total_cmp(&b.total));
         let alone = ends.iter().map(|end| end.without);
@@ -45,7 +45,7 @@ impl CalibrationPlan {
         let covariance = Cholesky::new(&information).ok_or(LabError::DARK)?.inverse();
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
-        let p = is_noise_known.then(|| self.by_noise(best.value.chi2, dof));
+        let p = is_noise_known.then(|| known.by_noise(best.value.chi2, dof));
         let more_than_noise = p.is_none_or(|p| p < LEVEL);
         let robust = |scores: &Matrix| {
             let moved = &covariance * scores;
@@ -129,7 +129,7 @@ impl CalibrationPlan {
             scene_hash: scene.hash.clone(),
             is_integrated,
             untold,
-            replicates: self.replicates.filter(|_| is_noise_known),
+            replicates: known.replicates.filter(|_| is_noise_known),
             noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
             field: field.as_ref().map(|f| f.errors),
             log_likelier: field.as_ref().map(|_| alone - total),
@@ -137,7 +137,7 @@ impl CalibrationPlan {
             finer_misfit: finer.as_ref().map(|(_, chi2)| chi2 / dof),
             finer_p: finer
                 .as_ref()
-                .and_then(|(_, chi2)| is_noise_known.then(|| self.by_noise(*chi2, dof))),
+                .and_then(|(_, chi2)| is_noise_known.then(|| known.by_noise(*chi2, dof))),
             dof,
             p,
             left,
@@ -156,19 +156,6 @@ impl CalibrationPlan {
             toml,
             found,
         })
-    }
-
-    /// Probability of as large a χ² by noise alone. Of errors estimated from K = ν + 1 replicates
-    /// each term is the square of Student's t, of mean ν/(ν − 2) and variance 2 (ν − 1)/(ν − 4)
-    /// times the square of that: χ² is compared as one of that mean and variance.
-    pub(super) fn by_noise(&self, chi2: f64, dof: f64) -> f64 {
-        match self.replicates.map(|k| f64::from(k) - 1.0) {
-            Some(nu) if nu > 4.0 => {
-                let fewer = dof * (nu - 4.0) / (nu - 1.0);
-                chi_square_sf(chi2 / dof * (nu - 2.0) / nu * fewer, fewer)
-            }
-            _ => chi_square_sf(chi2, dof),
-        }
     }
 
     /// Name and unit of each unknown.

@@ -473,10 +473,7 @@ material = { lambertian = 0.0 }
 #[test]
 fn estimated_errors_are_expected_to_scatter() {
     let mut random = normal(11);
-    let estimated = CalibrationPlan {
-        replicates: Some(8),
-        ..plan(&["hinge.angle"], 2)
-    };
+    let estimated = Certainty::new(Errors::Independent, Some(8));
     let mut t2 = || {
         let own = random()[0];
         let squares: f64 = (0..7).map(|_| random()[0]).map(|x| x * x).sum();
@@ -490,8 +487,7 @@ fn estimated_errors_are_expected_to_scatter() {
     // Tails heavier than those of χ²: up to twice as many as stated, and no fewer than half.
     let below = few(0.05, &all);
     assert!((25..=100).contains(&below), "{below}");
-    let known = plan(&["hinge.angle"], 2);
-    assert!(known.by_noise(1.4 * 400.0, 400.0) < 1e-6);
+    assert!(Certainty::STATED.by_noise(1.4 * 400.0, 400.0) < 1e-6);
 }
 
 /// Three photographs of each spot: over 40 draws the hinge is off by its stated error, √χ²/n within

@@ -15,10 +15,14 @@ fn told(fit: &Fit) -> String {
 /// An entry that noise does not explain, whatever the others say.
 pub(super) fn outlier(judged: &Judged) -> Option<String> {
     let far = judged.fit.as_ref()?.outlier?;
+    let others = match far.count - 1 {
+        0 => String::new(),
+        n => format!(" (and {n} more nearly as far)"),
+    };
     Some(format!(
-        "the entry of pixel {} and spot {} lies {} standard errors off what the picture would photograph, which \
-         chance leaves to none of all: a hot or dead pixel, a reflection, a cosmic ray. It moves the picture. Look \
-         at it, and leave it out (--left-out)",
+        "the entry of pixel {} and spot {} lies {} standard errors off what the picture would photograph{others}, \
+         where chance leaves none and all others fit: a hot or dead pixel, a reflection, a cosmic ray. It moves the \
+         picture. Look at it, and leave it out (--left-out)",
         far.pixel,
         far.spot,
         significant(far.z, 3)

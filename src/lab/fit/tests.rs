@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::certainty::Errors;
 use crate::lab::ensemble::Photographs;
 use crate::lab::misplaced::normal;
 use crate::lab::problem::problem;

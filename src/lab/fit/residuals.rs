@@ -1,0 +1,117 @@
+//! Squared deviates of photographs from what a picture would photograph.
+
+use serde::Serialize;
+
+use super::Fit;
+use crate::lab::agreement::freedom_of_rows;
+use crate::lab::certainty::{Certainty, Errors};
+use crate::lab::evidence::FIT_LEVEL;
+use crate::matrix::Matrix;
+use crate::num::statistics::{chi_square_sf, sidak_threshold};
+
+/// An entry that noise does not explain, among others that it does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Outlier {
+    /// Pixel index.
+    pub pixel: usize,
+    /// Spot index.
+    pub spot: usize,
+    /// |z| of its difference from what the picture would photograph.
+    pub z: f64,
+    /// Such entries in all, of which this is the farthest off.
+    pub count: usize,
+}
+
+/// |z| from which entries are looked at one by one, and how many at most: more are no exceptions.
+const FAR: f64 = 4.0;
+const MOST_FAR: usize = 1000;
+
+/// Squared deviates, summed row after row.
+#[derive(Debug, Default)]
+pub struct Residuals {
+    pub(super) sums: Vec<f64>,
+    pub(super) entries: usize,
+    pub(super) left_out: usize,
+    /// Pixel, spot and |z| of those far off.
+    far: Vec<(usize, usize, f64)>,
+}
+
+impl Residuals {
+    /// Adds rows (pixels): the photographs, what the picture would photograph, and the standard
+    /// errors, W.
+    pub fn add(&mut self, phi: &Matrix, seen: &Matrix, stderr: &Matrix, certainty: Certainty) {
+        for p in 0..phi.nrows() {
+            let mut sum = 0.0;
+            for l in 0..phi.ncols() {
+                let at = (p, l);
+                if stderr[at] <= 0.0 {
+                    self.left_out += 1;
+                    continue;
+                }
+                self.entries += 1;
+                let t = ((phi[at] - seen[at]) / stderr[at]).abs();
+                let z = certainty.normal(t);
+                sum += z * z;
+                if z > FAR && self.far.len() <= MOST_FAR {
+                    self.far.push((self.sums.len(), l, z));
+                }
+            }
+            self.sums.push(sum);
+        }
+    }
+
+    /// The fit of a picture that used up so many degrees of freedom; none where no entry has a
+    /// standard error, and where the picture has as many unknowns as there are entries.
+    pub fn fit(&self, used: f64, certainty: Certainty) -> Option<Fit> {
+        let entries = self.entries as f64;
+        let left = entries - used;
+        if left < 0.5 {
+            return None;
+        }
+        let chi2_per_dof = self.sums.iter().sum::<f64>() / left;
+        let dof = match certainty.errors {
+            Errors::Independent => certainty.of_chi2(left),
+            Errors::WithinRows => freedom_of_rows(&self.sums, self.entries) * left / entries,
+            Errors::Everywhere => 1.0,
+        };
+        let p = chi_square_sf(chi2_per_dof * dof, dof);
+        Some(Fit {
+            chi2_per_dof,
+            dof,
+            p,
+            entries: self.entries,
+            left_out: self.left_out,
+            level: FIT_LEVEL,
+            fits: p >= FIT_LEVEL,
+            within_integration: None,
+            outlier: self
+                .outlier(left, certainty)
+                .filter(|_| certainty.errors == Errors::Independent),
+            pooled: certainty.pooled(),
+        })
+    }
+}
+
+impl Residuals {
+    /// The entry farthest off of those that chance leaves to none of all; none where the others do
+    /// not fit without them.
+    fn outlier(&self, left: f64, certainty: Certainty) -> Option<Outlier> {
+        let limit = sidak_threshold(FIT_LEVEL, self.entries as u64);
+        let beyond = self.far.iter().filter(|(_, _, z)| *z > limit);
+        let beyond: Vec<&(usize, usize, f64)> = beyond.collect();
+        let squares: f64 = beyond.iter().map(|(_, _, z)| z * z).sum();
+        let others = left - beyond.len() as f64;
+        if self.far.len() > MOST_FAR || others < 0.5 {
+            return None;
+        }
+        let rest = (self.sums.iter().sum::<f64>() - squares) / others;
+        let dof = certainty.of_chi2(others);
+        let farthest = beyond.iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
+        (chi_square_sf(rest * dof, dof) >= FIT_LEVEL).then(|| Outlier {
+            pixel: farthest.0,
+            spot: farthest.1,
+            z: farthest.2,
+            count: beyond.len(),
+        })
+    }
+}
