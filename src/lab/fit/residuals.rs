@@ -107,7 +107,7 @@ impl Residuals {
         let rest = (self.sums.iter().sum::<f64>() - squares) / others;
         let dof = certainty.of_chi2(others);
         let farthest = beyond.iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
-        (chi_square_sf(rest * dof, dof) >= FIT_LEVEL).then(|| Outlier {
+        (chi_square_sf(rest * dof, dof) >= FIT_LEVEL).then_some(Outlier {
             pixel: farthest.0,
             spot: farthest.1,
             z: farthest.2,
