@@ -1333,8 +1333,8 @@ BREAKS = [
     Break(
         "Pictures that contradict each other are told, unless one is far likelier",
         "src/lab/doubt/contested.rs",
-        "own - other > SETTLES",
-        "other - own > SETTLES",
+        "|ahead| ahead > SETTLES",
+        "|ahead| -ahead > SETTLES",
         "lib",
         "lab::doubt::tests::pictures_that_contradict_each_other_are_told",
         10,

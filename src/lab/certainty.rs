@@ -143,6 +143,9 @@ impl Certainty {
     }
 }
 
+/// What is said of errors that follow from noisy entries, of whatever is estimated by them.
+pub(super) const FOLLOWS_ENTRIES: &str = "the standard errors of the photographs follow from their noisy entries (√n of counts, a share of each): entries that noise has made darker count more, and the light as a whole seems too dark. Of fewer than 8 pixels or spots it is not known what light to expect; give errors of the mean light";
+
 /// Degrees of freedom of a standard error from so many replicates.
 pub(super) fn freedom(replicates: u32) -> f64 {
     f64::from(replicates.max(2) - 1)

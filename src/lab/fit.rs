@@ -129,6 +129,20 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
     })
 }
 
+/// Another picture that explains the same photographs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rival {
+    /// Its method.
+    pub method: Method,
+    /// How far it lies off, root mean square, in the errors of both.
+    pub apart: f64,
+    /// Its errors over one's own, root mean square.
+    pub wider: f64,
+    /// ln of how much likelier one's own assumption makes the photographs; absent where that is not
+    /// known of both.
+    pub ahead: Option<f64>,
+}
+
 /// How far a recovery is to be believed, as the photographs themselves say.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
@@ -144,8 +158,8 @@ pub struct Judged {
     pub certainty: Option<Certainty>,
     /// How far the integrals of the model may move each element; none where that is not known.
     pub moved: Option<DVector<f64>>,
-    /// Another method that fits as well, and how far its picture lies off, in the errors of both.
-    pub against: Option<(Method, f64)>,
+    /// Another method that fits as well and says something else.
+    pub against: Option<Rival>,
 }
 
 impl Judged {

@@ -238,7 +238,7 @@ pub use error::{LabError, StudyError};
 pub use evidence::{Evidence, FIT_LEVEL, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
-pub use fit::{Attainable, Fit, Judged, Outlier, Residuals};
+pub use fit::{Attainable, Fit, Judged, Outlier, Residuals, Rival};
 pub use gains::{Deviations, Gains};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,

@@ -8,6 +8,7 @@ use crate::recovery::{Nuisance, RecoveryError};
 use crate::scene::Scene;
 
 use super::agreement::{Agreement, agree};
+use super::certainty::FOLLOWS_ENTRIES;
 use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::gains::Gains;
@@ -205,6 +206,9 @@ pub fn validate(
     agreement.occlusion = visible.as_ref().map(|v| v.points);
     agreement.unmodelled = unmodelled(scene);
     agreement.pooled = known.pooled();
+    if known.follows_entries {
+        agreement.unmodelled.push(FOLLOWS_ENTRIES.to_owned());
+    }
     if let Some(score) = &mut agreement.score {
         score.shadows_stay = off.are_shadows_still();
     }

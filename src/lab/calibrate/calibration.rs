@@ -59,6 +59,9 @@ pub struct Calibration {
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.
     pub replicates: Option<u32>,
+    /// Whether the stated noise follows from the noisy entries, and what light to expect in these
+    /// is not known.
+    pub follows_entries: bool,
     /// Estimated noise over the stated one (1 where it is stated), or W.
     pub noise: f64,
     /// χ² over degrees of freedom at that noise.

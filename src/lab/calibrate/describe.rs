@@ -4,6 +4,7 @@ mod directions;
 mod tables;
 
 use super::{Calibrated, Calibration};
+use crate::lab::certainty::FOLLOWS_ENTRIES;
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::lab::which_errors::which_errors;
@@ -227,6 +228,9 @@ impl Calibration {
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![self.fit()];
         notes.extend(self.few_replicates());
+        if self.follows_entries {
+            notes.push(format!("Beware: {FOLLOWS_ENTRIES}."));
+        }
         notes.extend([self.searched(), self.picture()]);
         let far = self.geometry().filter_map(|f| {
             let prior = f.prior?;

@@ -130,6 +130,7 @@ impl CalibrationPlan {
             is_integrated,
             untold,
             replicates: known.replicates.filter(|_| is_noise_known),
+            follows_entries: known.follows_entries,
             noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
             field: field.as_ref().map(|f| f.errors),
             log_likelier: field.as_ref().map(|_| alone - total),

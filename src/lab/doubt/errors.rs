@@ -1,5 +1,6 @@
 //! Standard errors, bands and probabilities that say less than they seem to.
 
+use crate::lab::certainty::FOLLOWS_ENTRIES;
 use crate::lab::fit::Judged;
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::num::digits::{figure, significant};
@@ -49,12 +50,8 @@ pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<Strin
 
 /// Errors of the photographs that noise has made smaller where it has made entries darker.
 pub(super) fn by_entries(judged: &Judged) -> Option<String> {
-    judged.certainty?.follows_entries.then(|| {
-        "the standard errors of the photographs follow from their noisy entries (√n of counts, a share \
-         of each): entries that noise has made darker count more, and the picture comes out too dark. Of \
-         fewer than 8 pixels or spots it is not known what light to expect; give errors of the mean light"
-            .to_owned()
-    })
+    let known = judged.certainty?;
+    known.follows_entries.then(|| FOLLOWS_ENTRIES.to_owned())
 }
 
 /// Errors of the picture that are more the model's integrals than the photographs' noise.

@@ -424,7 +424,7 @@ fn pictures_that_contradict_each_other_are_told() {
         });
         let [a, b] = &mut judged;
         contest(&mut [(&found[0], a), (&found[1], b)]);
-        judged.map(|j| j.against.map(|(method, _)| method))
+        judged.map(|j| j.against.map(|rival| rival.method))
     };
     assert_eq!(contested(&found), [None, None]);
     let errors = found[0].standard_error.clone().unwrap();
@@ -439,5 +439,13 @@ fn pictures_that_contradict_each_other_are_told() {
         found[0].log_evidence = Some(-3.0);
         found[1].log_evidence = Some(-3.0 - ahead);
         assert_eq!(contested(&found), expected, "{ahead}");
+    }
+    // Two levels that lie close to a wider picture are told where evidence does not settle it.
+    found[1].method = Method::JointTwoValued;
+    found[1].reflectance = found[0].reflectance.clone();
+    found[1].standard_error = found[0].standard_error.as_ref().map(|s| s / 20.0);
+    for (ahead, told) in [(2.0, true), (20.0, false)] {
+        found[1].log_evidence = found[0].log_evidence.map(|e| e + ahead);
+        assert_eq!(contested(&found), [None, gp.filter(|_| told)], "{ahead}");
     }
 }

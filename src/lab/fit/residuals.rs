@@ -22,6 +22,9 @@ pub struct Outlier {
     pub count: usize,
 }
 
+/// The least |z| of an outlier: counts of few photons reach farther than normal noise (Poisson's of
+/// mean 5 exceed it once in 10⁸).
+const LEAST: f64 = 7.0;
 /// |z| from which entries are looked at one by one, and how many at most: more are no exceptions.
 const FAR: f64 = 4.0;
 const MOST_FAR: usize = 1000;
@@ -96,7 +99,7 @@ impl Residuals {
     /// The entry farthest off of those that chance leaves to none of all; none where the others do
     /// not fit without them.
     fn outlier(&self, left: f64, certainty: Certainty) -> Option<Outlier> {
-        let limit = sidak_threshold(FIT_LEVEL, self.entries as u64);
+        let limit = sidak_threshold(FIT_LEVEL, self.entries as u64).max(LEAST);
         let beyond = self.far.iter().filter(|(_, _, z)| *z > limit);
         let beyond: Vec<&(usize, usize, f64)> = beyond.collect();
         let squares: f64 = beyond.iter().map(|(_, _, z)| z * z).sum();

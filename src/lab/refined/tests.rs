@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::certainty::FOLLOWS_ENTRIES;
 use crate::lab::misplaced::normal;
 use crate::lab::pooled::tests::repeated;
 use crate::lab::{
@@ -120,4 +121,10 @@ fn a_verdict_takes_errors_as_well_as_photographs_tell_them() {
     let (phi, stderr) = (&counts * electron, counts.map(|n| n.sqrt() * electron));
     let right = judged(&scene, [&phi, &stderr], None);
     assert!(right.agrees, "{}", right.verdict());
+    assert!(!right.unmodelled.iter().any(|u| u == FOLLOWS_ENTRIES));
+    // Of two spots it is not known what light to expect.
+    scene.laser.spots.truncate(2);
+    let [phi, stderr] = [&phi, &stderr].map(|m| m.columns(0, 2).into_owned());
+    let few = judged(&scene, [&phi, &stderr], None);
+    assert!(few.unmodelled.iter().any(|u| u == FOLLOWS_ENTRIES));
 }
