@@ -89,7 +89,7 @@
 //! Trace a scene made in code and compare it with the model:
 //!
 //! ```
-//! use phicam::lab::{Against, Errors, Integration, Measured, Test, validate};
+//! use phicam::lab::{Against, Certainty, Integration, Measured, Test, validate};
 //! use phicam::model::{Kernel, Occlusion};
 //! use phicam::scene::{Scene, file::SceneFile};
 //! use phicam::transport::{Budget, Control, Estimator, Plan, Sampling, render};
