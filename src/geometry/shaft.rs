@@ -54,6 +54,13 @@ impl Region {
         }
     }
 
+    /// Whether any point of it lies in front of the plane through `point` with normal `normal`, by
+    /// more than `slack`.
+    pub fn reaches_above(&self, point: DVec3, normal: DVec3, slack: f64) -> bool {
+        let above = |p: &DVec3| (*p - point).dot(normal) > slack;
+        self.points.iter().any(above)
+    }
+
     fn range(&self, axis: DVec3) -> [f64; 2] {
         let along = self.points.iter().map(|p| p.dot(axis));
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {

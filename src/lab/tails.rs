@@ -6,6 +6,10 @@ use crate::matrix::Matrix;
 use crate::num::digits::figure;
 use crate::transport::tails::{FEW_LIT, LARGEST, NEIGHBOURS, SKEWED, UNLIT, WORDS};
 
+/// Entries of which fewer do not show by each other what paths are rare: where one in a hundred has
+/// met such a path, a smaller matrix is likely to have met none.
+const FEW: usize = 100;
+
 /// Counts of flagged entries; an entry may be flagged for more than one reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tails {
@@ -49,20 +53,27 @@ impl Tails {
         }
     }
 
-    /// How many, why, where most, and what helps.
+    /// How many, why, where most, what helps, and what so few could not show.
     pub fn sentence(&self) -> String {
         let Self {
             entries, flagged, ..
         } = self;
+        let unseen = if *entries < FEW {
+            format!(
+                "; fewer than {FEW} entries may all have missed a path that is rare and bright: compare another --seed"
+            )
+        } else {
+            String::new()
+        };
         let Some(spot) = self.worst_spot else {
-            return format!("can be trusted at all {entries} entries");
+            return format!("can be trusted at all {entries} entries{unseen}");
         };
         let share = figure(100.0 * *flagged as f64 / *entries as f64, 2);
         let counts = WORDS.map(|(bit, words)| (self.of_bit(bit), words));
         let reasons = counts.into_iter().filter(|(count, _)| *count > 0);
         let reasons: Vec<String> = reasons.map(|(n, words)| format!("{n} {words}")).collect();
         format!(
-            "not to be trusted at {flagged} of {entries} entries ({share}\u{a0}%): {}; most at spot {spot} ({}); more samples help",
+            "not to be trusted at {flagged} of {entries} entries ({share}\u{a0}%): {}; most at spot {spot} ({}); more samples help{unseen}",
             reasons.join(", "),
             self.worst_spot_flagged
         )
@@ -100,6 +111,9 @@ mod tests {
         }
         let all = Tails::of(&Matrix::zeros(2, 3));
         assert_eq!(all.worst_spot, None);
-        assert_eq!(all.sentence(), "can be trusted at all 6 entries");
+        let of_few = "can be trusted at all 6 entries; fewer than 100 entries may";
+        assert!(all.sentence().starts_with(of_few), "{}", all.sentence());
+        let of_many = Tails::of(&Matrix::zeros(10, 10)).sentence();
+        assert_eq!(of_many, "can be trusted at all 100 entries");
     }
 }

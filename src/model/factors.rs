@@ -10,7 +10,7 @@ use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
 use super::occlusion::{Both, Obstructed};
-use super::terms::{Terms, compressed};
+use super::terms::{NEGLIGIBLE, NEGLIGIBLE_SMOOTH, Terms, compressed};
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
@@ -84,11 +84,12 @@ pub(super) type Shares = [Matrix; 2];
 /// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
 const MOST_HALVINGS: u32 = 5;
 /// Relative change below which what is extrapolated is fine enough.
-const SMOOTH_TARGET: f64 = 1e-4;
+const SMOOTH_TARGET: f64 = 1e-6;
 /// Cells at the end, of each that was cut once.
 const FINAL: usize = 16;
 
-/// Level of the rule on footprints where nothing is in the way.
+/// Level of the rule on footprints where nothing hides them, of the first division where nothing
+/// is in the way at all.
 const LEVEL: usize = 1;
 
 /// Elements in cells that are fine enough.
@@ -108,8 +109,8 @@ pub(super) struct Settled<'a> {
 /// The elements of a scene, cells of them cut in four until all A_j together change by less than
 /// the target, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
 /// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3, to a
-/// target of 1e-4; else footprints and spots are divided until that changes the A_j of elements cut
-/// once by less.
+/// target of 1e-6. Footprints and spots are divided until that changes the A_j of elements cut once
+/// by less.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
@@ -137,20 +138,34 @@ pub(super) fn settled<'a>(
     let mut halvings = 1;
     let mut of = cut_in(halvings);
     let count = |of: &[Vec<HiddenCell>]| of.iter().map(Vec::len).sum::<usize>();
-    let footprints = Cut::new(scene, Extent::UNOBSTRUCTED).seen(scene, LEVEL);
+    let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
     let by = |division| {
+        let level = LEVEL + if is_smooth { division as usize } else { 0 };
         let past = Past {
             scene,
             kernel,
-            footprints: footprints.clone(),
+            footprints: cut.seen(scene, level),
             occlusion: divided::past(scene, kernel, obstacles, division),
+            negligible: if is_smooth {
+                NEGLIGIBLE_SMOOTH
+            } else {
+                NEGLIGIBLE
+            },
         };
         let own = past.all(&of)?;
         Ok::<_, ModelError>((past, own))
     };
     let walls = divided::settled(
         by,
-        |(past, _)| !is_smooth && divided::can_be_finer(&past.occlusion, FINAL * count(&of), share),
+        |(past, _)| {
+            let all = (count(&of), 1.0);
+            let (cells, share) = if is_smooth {
+                all
+            } else {
+                (FINAL * all.0, share)
+            };
+            divided::can_be_finer(&past.occlusion, cells, share)
+        },
         |(_, now), (_, next)| moved(now, next),
         target,
     )?;
@@ -213,6 +228,8 @@ pub(super) struct Past<'a> {
     /// Of each pixel.
     pub footprints: Vec<Vec<WallPoint>>,
     pub occlusion: Obstructed<'a>,
+    /// Terms of an element that are left out.
+    negligible: f64,
 }
 
 impl Past<'_> {
@@ -233,10 +250,14 @@ impl Past<'_> {
             each.fold([0.0; 2], add)
         };
         let lit = |l: usize| laser[l].iter().copied().fold([0.0; 2], add);
-        let ratio = self.by_rule(cells);
-        let c = Matrix::from_fn(pixels, cells.len(), |p, q| ratio[p] * camera[q][p][1]);
+        let unobstructed = |seen: &Vec<Both>| seen.iter().map(|[all, _]| *all).collect::<Vec<_>>();
+        let each = cells.iter().zip(&camera);
+        let ratio: Vec<Vec<f64>> = each
+            .map(|(cell, seen)| self.by_rule(cell, &unobstructed(seen)))
+            .collect();
+        let c = Matrix::from_fn(pixels, cells.len(), |p, q| ratio[q][p] * camera[q][p][1]);
         let d = Matrix::from_fn(cells.len(), spots, |q, l| laser[l][q][1]);
-        let (camera, laser) = compressed(&c, &d)?;
+        let (camera, laser) = compressed((&c, &d), self.negligible)?;
         Ok(Own {
             camera,
             laser,
@@ -245,21 +266,15 @@ impl Past<'_> {
         })
     }
 
-    /// Of each pixel what its rule gives of the middle cell over what that sends to the middles of
-    /// its parts: where nothing hides a footprint its rule holds, not its middle.
-    pub(super) fn by_rule(&self, cells: &[HiddenCell]) -> Vec<f64> {
-        let Some(middle) = cells.get(cells.len() / 2) else {
-            return Vec::new();
+    /// Of each pixel what its rule gives of a cell over what that sends to the middles of its parts:
+    /// where nothing hides a footprint its rule holds, not its middle.
+    pub(super) fn by_rule(&self, cell: &HiddenCell, by_middles: &[f64]) -> Vec<f64> {
+        let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point);
+        let ratio = |(footprint, by_middles): (&Vec<WallPoint>, &f64)| match *by_middles {
+            0.0 => 1.0,
+            by_middles => footprint.iter().map(towards).sum::<f64>() / by_middles,
         };
-        let ratio = |(p, by_middle): (usize, f64)| {
-            let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &middle.point);
-            match by_middle {
-                0.0 => 1.0,
-                by_middle => self.footprints[p].iter().map(towards).sum::<f64>() / by_middle,
-            }
-        };
-        let by_middle = self.occlusion.unobstructed(middle);
-        by_middle.into_iter().enumerate().map(ratio).collect()
+        self.footprints.iter().zip(by_middles).map(ratio).collect()
     }
 }
 

@@ -238,15 +238,14 @@ impl<'a> Sweep<'a> {
         &self,
         cell: &HiddenCell,
         footprints: &[Vec<WallPoint>],
-        ratio: &[f64],
+        (by_middles, ratio): (&[f64], &[f64]),
     ) -> Vec<Rates> {
         if self.is_still {
             return vec![[0.0; AT_ONCE]; ratio.len()];
         }
         let (scene, moves) = (self.past.scene, self.moves(cell));
-        let by_middle = self.past.unobstructed(cell);
         let of = |p: usize| {
-            if by_middle[p] == 0.0 {
+            if by_middles[p] == 0.0 {
                 return [0.0; AT_ONCE];
             }
             self.of(|k| {
@@ -256,7 +255,7 @@ impl<'a> Sweep<'a> {
                 let parts = self.past.pixels[p].iter().zip(&self.middles[p]);
                 let parts =
                     parts.map(|(patch, rate)| patch.whole.towards_rate(scene, &rate[k], to));
-                (rule.sum::<f64>() - ratio[p] * parts.sum::<f64>()) / by_middle[p]
+                (rule.sum::<f64>() - ratio[p] * parts.sum::<f64>()) / by_middles[p]
             })
         };
         (0..ratio.len()).map(of).collect()

@@ -11,7 +11,7 @@ use super::matrix_model::element_grids;
 use super::obstacles::obstacles;
 use super::occlusion::Both;
 use super::sweep::{Rates, Sweep};
-use super::terms::{Terms, compressed};
+use super::terms::{NEGLIGIBLE, Terms, compressed};
 use crate::geometry::AT_ONCE;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, Velocity};
@@ -85,7 +85,9 @@ fn own_rates(
     let occlusion = &past.occlusion;
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
     let n = cells.len();
-    let ratio = past.by_rule(cells);
+    let unobstructed: Vec<Vec<f64>> = cells.iter().map(|c| occlusion.unobstructed(c)).collect();
+    let each = cells.iter().zip(&unobstructed);
+    let ratio: Vec<Vec<f64>> = each.map(|(cell, own)| past.by_rule(cell, own)).collect();
     let laser: Vec<Vec<Both>> = (0..spots).map(|l| occlusion.laser(l, cells)).collect();
     // What shines is what it is wherever all else is.
     let terms = if occlusion.scene.laser.is_shining() {
@@ -99,8 +101,14 @@ fn own_rates(
         Vec::new()
     };
     let still = |p: usize, q: usize| light.get(q).map_or(0.0, |own| own[p][1]);
-    let of_ratio = match cells.get(cells.len() / 2) {
-        Some(middle) => sweep.by_rule(middle, &past.footprints, &ratio),
+    // How the ratio changes differs over an element by much less than the ratio: by its middle.
+    let middle = n / 2;
+    let of_ratio = match cells.get(middle) {
+        Some(cell) => sweep.by_rule(
+            cell,
+            &past.footprints,
+            (&unobstructed[middle], &ratio[middle]),
+        ),
         None => Vec::new(),
     };
     let camera: Vec<Vec<Rates>> = cells.iter().map(|cell| sweep.camera(cell)).collect();
@@ -108,9 +116,9 @@ fn own_rates(
     let of = |lane: usize| {
         let c = Matrix::from_fn(pixels, terms, |p, q| {
             if q < n {
-                ratio[p] * camera[q][p][lane] + of_ratio[p][lane] * still(p, q)
+                ratio[q][p] * camera[q][p][lane] + of_ratio[p][lane] * still(p, q)
             } else {
-                ratio[p] * still(p, q - n)
+                ratio[q - n][p] * still(p, q - n)
             }
         });
         let d = Matrix::from_fn(terms, spots, |q, l| {
@@ -120,7 +128,7 @@ fn own_rates(
                 laser_rates[l][q - n][lane]
             }
         });
-        compressed(&c, &d)
+        compressed((&c, &d), NEGLIGIBLE)
     };
     (0..lanes).map(of).collect()
 }

@@ -4,8 +4,11 @@ use super::error::ModelError;
 use crate::matrix::Matrix;
 use crate::num::linalg::{rows_times, svd};
 
-/// Terms less than this share of an element's largest are left out.
-const NEGLIGIBLE: f64 = 1e-6;
+/// Terms less than this share of an element's largest are left out, past what stands in the way and
+/// with nothing there: less than what cells leave out.
+pub(super) const NEGLIGIBLE: f64 = 1e-6;
+pub(super) const NEGLIGIBLE_SMOOTH: f64 = 1e-9;
+
 /// The light of elements with albedo 1 as products.
 #[derive(Clone, Debug)]
 pub struct Terms {
@@ -87,8 +90,11 @@ fn summed(
     all
 }
 
-/// C D with as few terms as carry it: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′ Σ′)(V′ᵀ Vᵀ).
-pub(super) fn compressed(c: &Matrix, d: &Matrix) -> Result<(Matrix, Matrix), ModelError> {
+/// C D with as few terms as carry it but for this share: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′ Σ′)(V′ᵀ Vᵀ).
+pub(super) fn compressed(
+    (c, d): (&Matrix, &Matrix),
+    negligible: f64,
+) -> Result<(Matrix, Matrix), ModelError> {
     let nothing = (Matrix::zeros(c.nrows(), 0), Matrix::zeros(0, d.ncols()));
     if c.amax() == 0.0 || d.amax() == 0.0 {
         return Ok(nothing);
@@ -96,7 +102,7 @@ pub(super) fn compressed(c: &Matrix, d: &Matrix) -> Result<(Matrix, Matrix), Mod
     let kept = |sigma: &[f64]| {
         sigma
             .iter()
-            .take_while(|s| **s > NEGLIGIBLE * sigma[0])
+            .take_while(|s| **s > negligible * sigma[0])
             .count()
     };
     let right = svd(d)?;

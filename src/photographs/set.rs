@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::error::PhotographError;
 use super::lens::Lens;
 use super::noise::CameraNoise;
-use crate::scene::read_toml;
+use crate::scene::{exactly, read_toml};
 
 /// A whole list.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
@@ -223,6 +223,7 @@ pub struct CropTable {
 #[serde(deny_unknown_fields)]
 pub struct MarkTable {
     /// Where it is in the photograph: column and row, (0, 0) the centre of the upper left pixel.
+    #[serde(deserialize_with = "exactly::one")]
     pub pixel: [f64; 2],
     /// Where it is on the wall: x and y, or x, y and z.
     pub wall: Vec<f64>,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Role;
 use super::error::{Fault, keys};
+use super::exactly;
 use super::surface::{Surface, of_role};
 use crate::geometry::{DAffine3, DMat3, DVec3, Shape};
 
@@ -13,8 +14,10 @@ use crate::geometry::{DAffine3, DMat3, DVec3, Shape};
 #[serde(deny_unknown_fields)]
 pub struct AxesTable {
     /// Direction of the scene's x, of any length but 0.
+    #[serde(deserialize_with = "exactly::one")]
     pub x: [f64; 3],
     /// Direction of the scene's y, at a right angle to x.
+    #[serde(deserialize_with = "exactly::one")]
     pub y: [f64; 3],
 }
 

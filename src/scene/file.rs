@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::axes::AxesTable;
 use super::builtin::builtins;
 use super::error::SceneError;
+use super::exactly;
 use super::material::MaterialTable;
 use super::parse::{parse, write};
 use super::sensor::SensorSettings;
@@ -100,6 +101,7 @@ pub struct LaserTable {
     /// Wavelength, m (always metres).
     pub wavelength: f64,
     /// Where the beam starts.
+    #[serde(deserialize_with = "exactly::one")]
     pub position: Triple,
     /// Diameter of the spot on the wall; 0 is an ideal spot. For a Gaussian the 1/e² diameter.
     #[serde(default)]
@@ -127,12 +129,14 @@ pub enum ProfileShape {
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
     /// The pinhole.
+    #[serde(deserialize_with = "exactly::one")]
     pub position: Triple,
     /// Area of the aperture, unit²; it stands parallel to the wall.
     pub aperture_area: f64,
     /// Rectangle on the wall that the pixel grid covers exactly.
     pub view: ViewTable,
     /// Columns (along x) and rows (along y).
+    #[serde(deserialize_with = "exactly::one")]
     pub pixels: [u32; 2],
 }
 
@@ -141,8 +145,10 @@ pub struct CameraTable {
 #[serde(deny_unknown_fields)]
 pub struct ViewTable {
     /// Its ends in x.
+    #[serde(deserialize_with = "exactly::one")]
     pub x: [f64; 2],
     /// Its ends in y.
+    #[serde(deserialize_with = "exactly::one")]
     pub y: [f64; 2],
 }
 
@@ -213,8 +219,10 @@ pub enum FacesName {
 #[serde(deny_unknown_fields)]
 pub struct DiscTable {
     /// Centre.
+    #[serde(deserialize_with = "exactly::one")]
     pub centre: Triple,
     /// Normal of the front, of any length but 0.
+    #[serde(deserialize_with = "exactly::one")]
     pub normal: Triple,
     /// Radius, above 0.
     pub radius: f64,
@@ -239,10 +247,13 @@ pub struct KnownTable {
 #[serde(deny_unknown_fields)]
 pub struct RectangleTable {
     /// Where both edges begin.
+    #[serde(deserialize_with = "exactly::one")]
     pub corner: Triple,
     /// First edge; the front normal is u × v.
+    #[serde(deserialize_with = "exactly::one")]
     pub u: Triple,
     /// Second edge.
+    #[serde(deserialize_with = "exactly::one")]
     pub v: Triple,
 }
 
@@ -251,6 +262,7 @@ pub struct RectangleTable {
 #[serde(deny_unknown_fields)]
 pub struct SphereTable {
     /// Centre.
+    #[serde(deserialize_with = "exactly::one")]
     pub centre: Triple,
     /// Radius, above 0.
     pub radius: f64,

@@ -24,6 +24,7 @@ mod dimension;
 mod displaced;
 mod element;
 mod error;
+pub(crate) mod exactly;
 pub mod file;
 mod files;
 mod hash;

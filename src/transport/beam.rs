@@ -6,7 +6,7 @@ use crate::scene::{Profile, Scene};
 
 use super::area::AreaSampler;
 use super::vertex::{Oriented, Vertex};
-use super::visibility::known_or_all;
+use super::visibility::{End, all_ends, known_or_all};
 
 /// The beams to all spots of the scene.
 #[derive(Debug)]
@@ -112,6 +112,23 @@ impl<'a> Beams<'a> {
         let ends = [None, Some(id)];
         let bvh = self.scene.bvh();
         (inside && bvh.surely_free(&laser, &Region::patch(&square), ends)).then_some(id)
+    }
+
+    /// Where the light of a spot lands: nowhere, on a known part of a shape, or on any.
+    pub(super) fn ends(&self, spot: usize) -> Vec<End> {
+        match self.ideal.get(spot) {
+            Some(lit) => {
+                let end = |p: &Vertex| (p.shape, Some(Region::point(p.position)));
+                lit.iter().map(end).collect()
+            }
+            None => match self.surely_lands_on(spot, Reach::Samples) {
+                Some(id) => {
+                    let square = self.square(spot, Reach::Samples);
+                    vec![(id, square.as_ref().map(Region::patch))]
+                }
+                None => all_ends(self.scene),
+            },
+        }
     }
 
     /// Shapes on which the light of any spot of the scene may land.

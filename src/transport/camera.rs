@@ -5,7 +5,7 @@ use crate::num::lanes::widest;
 use crate::scene::{Scene, Texture};
 
 use super::vertex::{Batch, Vertex, constant_factor};
-use super::visibility::hide;
+use super::visibility::{End, hide};
 
 /// The line of sight of a pixel through the point (a, b) of its footprint, and the étendue that a
 /// uniform sample of (a, b) stands for.
@@ -51,6 +51,12 @@ impl PixelView {
     /// The shape that fills the pixel, if that is known.
     pub(super) fn shape(&self) -> Option<ShapeId> {
         self.filled_by
+    }
+
+    /// The same with its outline in the pixel.
+    pub(super) fn end(&self, scene: &Scene) -> Option<End> {
+        let id = self.filled_by?;
+        Some((id, fills(scene, self.pixel, id)))
     }
 
     /// By shape: what can stand between the pixel's first vertices and each of `targets`.

@@ -12,7 +12,7 @@ use super::path::PathSampler;
 use super::plan::Plan;
 use super::spots::LitSpots;
 use super::strata::Strata;
-use super::visibility::{between, known_or_all, may_light_any};
+use super::visibility::{between, known_or_all, may_light};
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
 
@@ -55,7 +55,10 @@ impl<'a> Context<'a> {
         };
         let path = PathSampler::new(scene, &seen, guided);
         let close = !seen.iter().all(|s| path.far_from_hidden(*s));
-        let two = |t: &ShapeId| may_light_any(scene, &seen, *t);
+        let two = |t: &ShapeId| {
+            seen.iter()
+                .any(|s| may_light(scene, &(*s, None), &(*t, None)))
+        };
         let strata = Strata::new(
             scene,
             &between,

@@ -36,7 +36,7 @@ const SHARE: f64 = 0.05;
 /// standard errors: at 0.3, 6 % of a normal variable lie outside its 95 %.
 const SHIFT: f64 = 0.3;
 
-/// A column or row: entries that may be lit, those flagged by themselves, and Σσ of these.
+/// A column or row: entries that met light, those flagged by themselves, and Σσ of these.
 #[derive(Clone, Copy, Debug, Default)]
 struct Line {
     entries: f64,
@@ -46,11 +46,12 @@ struct Line {
 
 impl Line {
     fn add(&mut self, own: u32, stderr: f64) {
+        if own & UNLIT != 0 {
+            return;
+        }
         self.entries += 1.0;
         if own != 0 {
             self.flagged += 1.0;
-        }
-        if own != 0 && own & UNLIT == 0 {
             self.met += stderr;
         }
     }
@@ -68,8 +69,8 @@ impl Line {
 ///   by more than 0.3 of its σ: Σσ_flagged/m > 0.3·σ. The largest block t of n moves the mean by (t
 ///   − t̄)/(n − 1), which is at most σ, and is σ where it alone makes the scatter.
 ///
-/// All three matrices are pixels × spots. Entries 0 ± 0 are known to be dark and take no part. The
-/// outcome depends on the own codes only: it may be called again on a larger part of Φcam.
+/// All three matrices are pixels × spots. Entries 0 ± 0 are known to be dark and take no part, nor
+/// do those that met no light: a shadow says nothing of what is beside it. The outcome depends on the own codes only: it may be called again on a larger part of Φcam.
 pub fn flag_neighbours(tails: &mut Matrix, flux: &Matrix, stderr: &Matrix) {
     let mut rows = vec![Line::default(); tails.nrows()];
     let mut columns = vec![Line::default(); tails.ncols()];

@@ -1,36 +1,48 @@
 //! Visibility. What can stand between two surfaces is judged first, conservatively; rays are cast
 //! only where something can.
 
-use crate::geometry::{Blockers, Bvh, DVec3, Ray, Shape, ShapeId};
+use crate::geometry::{Blockers, Bvh, DVec3, Ray, Region, ShapeId};
 use crate::scene::Scene;
 
 /// Whether light can travel between the fronts of shapes `s` and `t`: no only where one lies
 /// nowhere above the other's plane, or where `t` is black. Shapes in between are not considered.
 pub(super) fn may_be_visible(scene: &Scene, s: ShapeId, t: ShapeId) -> bool {
-    !scene.surfaces[t as usize].is_black() && may_face(scene, s, t)
+    may_reach(scene, &(s, None), t)
 }
 
-/// Whether the light that lands on shape `t`, or with which it shines, may reach any of `from`.
-pub(super) fn may_light_any(scene: &Scene, from: &[ShapeId], t: ShapeId) -> bool {
-    let lit = &scene.surfaces[t as usize];
+/// The end of a path: a shape, and the part of it where the path ends, if that is known.
+pub(super) type End = (ShapeId, Option<Region>);
+
+/// The same from an end of a path.
+pub(super) fn may_reach(scene: &Scene, from: &End, t: ShapeId) -> bool {
+    !scene.surfaces[t as usize].is_black() && may_face(scene, from, &(t, None))
+}
+
+/// Whether the light that lands on `t`, or with which it shines, may reach `from`.
+pub(super) fn may_light(scene: &Scene, from: &End, t: &End) -> bool {
+    let lit = &scene.surfaces[t.0 as usize];
     let shines = lit.shining().is_some() && lit.albedo.largest() > 0.0;
-    (shines || !lit.is_black()) && from.iter().any(|s| may_face(scene, *s, t))
+    (shines || !lit.is_black()) && may_face(scene, from, t)
 }
 
-/// Whether the fronts of two shapes may see each other.
-fn may_face(scene: &Scene, s: ShapeId, t: ShapeId) -> bool {
-    let [from, to] = [s, t].map(|id| &scene.surfaces[id as usize]);
-    if s == t {
-        return from.shape.may_see_itself();
+/// Whether the fronts of two ends may see each other.
+fn may_face(scene: &Scene, s: &End, t: &End) -> bool {
+    let [from, to] = [s, t].map(|(id, _)| &scene.surfaces[*id as usize].shape);
+    if s.0 == t.0 {
+        return from.may_see_itself();
     }
-    let slack = 1e-9 * (from.shape.area().sqrt() + to.shape.area().sqrt());
-    let above = |a: &Shape, b: &Shape| {
-        !a.is_flat() || {
-            let p = a.at([0.5, 0.5]);
-            b.reaches_above(p.position, p.normal, slack)
+    let slack = 1e-9 * (from.area().sqrt() + to.area().sqrt());
+    let above = |a: &End, b: &End| {
+        let [plane, shape] = [a, b].map(|(id, _)| &scene.surfaces[*id as usize].shape);
+        !plane.is_flat() || {
+            let p = plane.at([0.5, 0.5]);
+            match &b.1 {
+                Some(part) => part.reaches_above(p.position, p.normal, slack),
+                None => shape.reaches_above(p.position, p.normal, slack),
+            }
         }
     };
-    above(&from.shape, &to.shape) && above(&to.shape, &from.shape)
+    above(s, t) && above(t, s)
 }
 
 /// Whether light can travel between `t` and any of `from`.
@@ -54,7 +66,12 @@ pub(super) fn known_or_all(scene: &Scene, known: Option<Vec<ShapeId>>) -> Vec<Sh
     shapes
 }
 
-fn all_shapes(scene: &Scene) -> impl Iterator<Item = ShapeId> {
+/// All shapes of the scene, as ends of which no more is known.
+pub(super) fn all_ends(scene: &Scene) -> Vec<End> {
+    all_shapes(scene).map(|t| (t, None)).collect()
+}
+
+pub(super) fn all_shapes(scene: &Scene) -> impl Iterator<Item = ShapeId> {
     0..scene.surfaces.len() as ShapeId
 }
 

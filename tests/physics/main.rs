@@ -4,6 +4,7 @@
 mod accuracy;
 mod bayes;
 mod brdf;
+mod calibrated_past;
 mod closed_forms;
 mod counts;
 mod divided;

@@ -211,4 +211,17 @@ mod tests {
             assert_eq!(first.scene, again.scene, "{line}");
         }
     }
+
+    /// What is named twice is studied once, as it stands first.
+    #[test]
+    fn each_value_is_taken_once() {
+        let args = parsed("study power --samples 16,8,1.6e1 --estimator shared,factored,shared");
+        let values = args.values().unwrap();
+        assert_eq!(values.list::<u64>("samples").unwrap(), [16, 8]);
+        let estimators: Vec<String> = values.list("estimator").unwrap();
+        assert_eq!(estimators, ["shared", "factored"]);
+        let args = parsed("study noise --noise 0.1,1e-1,0.01");
+        let noise: Vec<f64> = args.values().unwrap().list("noise").unwrap();
+        assert_eq!(noise, [0.1, 0.01]);
+    }
 }

@@ -42,11 +42,14 @@ impl Calibration {
     }
 
     /// Whether a misfit may be that of the integration: a finer rule fits, or it moves what was
-    /// found by more than noise does.
+    /// found by more than noise does and explains half of what is left over.
     fn is_coarse(&self) -> bool {
         let moves = |f: &Calibrated| f.by_rule.is_some_and(|moved| moved > f.by_curvature);
         let fits = self.finer_p.is_some_and(|p| p >= SIGNIFICANCE);
-        self.is_more_than_noise() && self.is_integrated && (fits || self.geometry().any(moves))
+        let explains = |finer: f64| finer - 1.0 < 0.5 * (self.misfit - 1.0);
+        let explains = self.p.is_none() || self.finer_misfit.is_some_and(explains);
+        let may = fits || explains && self.geometry().any(moves);
+        self.is_more_than_noise() && self.is_integrated && may
     }
 
     /// Whether more than noise may be left.

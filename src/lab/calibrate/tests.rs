@@ -8,7 +8,7 @@ use super::*;
 use crate::lab::finding::Describe;
 use crate::lab::pooled::tests::repeated;
 use crate::matrix::Matrix;
-use crate::model::{Extent, converged};
+use crate::model::{Effort, Extent, converged};
 use crate::num::cosines::from_cosines;
 use crate::recovery::ErrorField;
 use crate::scene::file::SceneFile;
@@ -328,6 +328,27 @@ fn photographs_of_no_geometry_come_with_that_verdict_first() {
         "{wrong}"
     );
     assert!(wrong.contains("these are no estimates"), "{wrong}");
+}
+
+/// A board that is turned where only its distance is free: its light by a finer rule leaves as
+/// much, so that the photographs refute it however coarse its elements are.
+#[test]
+fn a_misfit_that_a_finer_rule_leaves_refutes() {
+    let scene = small("bench", 8);
+    let yaw = Parameter::named(&scene, "hidden.yaw").unwrap();
+    let there = scene.displaced(&yaw, &[4.0]).unwrap();
+    let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
+    let model = MatrixModel::over_areas(&there, kernel, Some([2; 2]), occlusion, Effort::USUAL);
+    let phi = model.unwrap().phi();
+    let stderr = &phi * 1e-3;
+    let plan = CalibrationPlan {
+        integration: Integration::Quadrature,
+        ..plan(&["hidden.normal"], 2)
+    };
+    let found = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+    let found = found.unwrap();
+    assert!(found.finer_misfit.unwrap() > 2.0, "{found:?}");
+    assert!(!found.is_found(), "{}", found.describe().sentence);
 }
 
 /// Where no noise is stated, what the model lacks is not told from noise: the sentence says so.

@@ -20,7 +20,7 @@ impl Values {
         Self(options.iter().map(default).collect())
     }
 
-    /// The same with other values of one option.
+    /// The same with other values of one option, each once.
     ///
     /// # Errors
     /// [`OptionError`], where there is no such option or a value is none of its values.
@@ -36,7 +36,16 @@ impl Values {
             Kind::Whole(_) => whole(&value).map_or(value, |n| n.to_string()),
             _ => value,
         };
-        *own = values.into_iter().map(digits).collect();
+        own.clear();
+        for value in values.into_iter().map(digits) {
+            let is_there = |other: &String| match option.kind {
+                Kind::Number => other.parse::<f64>() == value.parse::<f64>(),
+                _ => *other == value,
+            };
+            if !own.iter().any(is_there) {
+                own.push(value);
+            }
+        }
         Ok(self)
     }
 

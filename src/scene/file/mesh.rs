@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Triple;
+use crate::scene::exactly;
 use crate::scene::mesh::Generator;
 
 /// Triangles from a file, or made by phicam.
@@ -30,7 +31,11 @@ pub struct MeshTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotate: Option<Vec<RotationTable>>,
     /// Shift, after the rotations.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::maybe",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub translate: Option<Triple>,
     /// Puts the mesh, as it is turned, down on another surface.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,6 +66,7 @@ pub enum ScaleTable {
 #[serde(deny_unknown_fields)]
 pub struct RotationTable {
     /// The axis, of any length but 0.
+    #[serde(deserialize_with = "exactly::one")]
     pub axis: Triple,
     /// Degrees, counterclockwise seen from the tip of the axis.
     pub angle: f64,
@@ -73,5 +79,6 @@ pub struct OnTable {
     /// Name of a surface that comes earlier in the file.
     pub surface: String,
     /// The place on it, in its parameters.
+    #[serde(deserialize_with = "exactly::one")]
     pub at: [f64; 2],
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::scene::exactly;
+
 /// A layout of spots; the table in [`crate::scene`] says which keys it takes.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
@@ -28,7 +30,11 @@ pub struct SpotsTable {
     /// square, lines, grid, ring, random or list.
     pub layout: Layout,
     /// Centre on the wall (square, grid, ring, random).
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::maybe",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub centre: Option<[f64; 2]>,
     /// Half the side of the square (square, grid, random).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,7 +61,11 @@ pub struct SpotsTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
     /// The spots themselves (list).
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::each",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub points: Option<Vec<[f64; 2]>>,
 }
 
@@ -64,8 +74,10 @@ pub struct SpotsTable {
 #[serde(deny_unknown_fields)]
 pub struct LineTable {
     /// Its first spot.
+    #[serde(deserialize_with = "exactly::one")]
     pub from: [f64; 2],
     /// Its last spot.
+    #[serde(deserialize_with = "exactly::one")]
     pub to: [f64; 2],
     /// Spots on the line, both ends included.
     pub count: u32,

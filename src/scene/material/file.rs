@@ -11,6 +11,7 @@ use super::shining::MOST_FALLOFF;
 use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
 use super::{Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet, Shining, Shown};
 use crate::scene::error::{Fault, keys};
+use crate::scene::exactly;
 use crate::scene::texture::{AlbedoTable, Texture};
 use kind::{kind, refuse_foreign_keys};
 
@@ -63,7 +64,11 @@ pub struct MaterialTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exitance: Option<f64>,
     /// Exponents of the fall-off along u and v (shining); default [0, 0], Lambertian.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::maybe",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub falloff: Option<[f64; 2]>,
     /// Wavelength of its light, m (shining); default 550e-9.
     #[serde(skip_serializing_if = "Option::is_none")]

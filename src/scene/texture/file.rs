@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::bilinear::Wrap;
 use crate::image::Transfer;
+use crate::scene::exactly;
 
 /// `0.8`, a table that says how the albedo varies, or `"unknown"`.
 #[derive(Clone, Debug, Serialize)]
@@ -38,7 +39,11 @@ impl From<f64> for AlbedoTable {
 #[serde(deny_unknown_fields)]
 pub struct VariedTable {
     /// Checks along u and v; cell (0, 0), at the corner, is dark.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::maybe",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub checkerboard: Option<[u32; 2]>,
     /// Albedo of the dark checks, or of a picture's value 0.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -50,7 +55,11 @@ pub struct VariedTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cells: Option<Vec<Vec<f64>>>,
     /// Albedo that changes linearly along u, from the corner on: [start, end].
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::maybe",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub ramp: Option<[f64; 2]>,
     /// A picture below the scene's folder: PNG, JPEG or OpenEXR. Its lower left corner is at the
     /// surface's corner.
@@ -60,7 +69,11 @@ pub struct VariedTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<String>,
     /// Columns and rows of the target; its own unless given.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "exactly::maybe",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub size: Option<[u32; 2]>,
     /// What the image's stored values mean: srgb or linear.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -233,4 +233,6 @@ fn neighbours_follow() {
     assert_eq!(flagged(&[(3, LARGEST)], 0.56), 0);
     assert_eq!(flagged(&[(3, LARGEST)], 0.58), 18);
     assert_eq!(flagged(&[(3, UNLIT)], 100.0), 0);
+    // A shadow, however large.
+    assert_eq!(flagged(&[3, 4, 5, 6].map(|p| (p, UNLIT)), 100.0), 0);
 }
