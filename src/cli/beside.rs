@@ -80,8 +80,13 @@ impl Beside {
             );
             return Err(Failure::new(cause, cure));
         }
+        let glare = glare.map(|file| {
+            let pattern = of.read(file)?;
+            refuse_dark(file, &pattern)?;
+            Ok::<_, Failure>(pattern)
+        });
         Ok(Self {
-            glare: glare.map(|file| of.read(file)).transpose()?,
+            glare: glare.transpose()?,
             patterns,
             left_out,
         })
@@ -100,6 +105,18 @@ impl Beside {
             left_out: self.left_out.as_ref(),
         }
     }
+}
+
+/// Refuses patterns that are 0 everywhere: they would change nothing.
+fn refuse_dark(file: &Path, pattern: &Matrix) -> Result<(), Failure> {
+    if pattern.iter().any(|x| *x != 0.0) {
+        return Ok(());
+    }
+    let cause = format!("{} is 0 everywhere", file.display());
+    Err(Failure::new(
+        cause,
+        "leave it out, or give the pattern that was meant",
+    ))
 }
 
 /// Patterns whose strength in each frame is estimated: those of a polynomial, then those of a file.
@@ -131,7 +148,8 @@ fn patterns(args: &BesideArgs, of: &PhotographSize) -> Result<Option<Matrix>, Fa
         let cure = format!("give at most {MOST_PATTERNS}");
         return Err(Failure::new(cause, cure));
     }
-    let own = read_undamaged(file)?;
+    let own: Matrix = read_undamaged(file)?;
+    refuse_dark(file, &own)?;
     Ok(Some(match smooth {
         None => own,
         Some(smooth) => {

@@ -266,8 +266,8 @@ impl Past<'_> {
         })
     }
 
-    /// Of each pixel what its rule gives of a cell over what that sends to the middles of its parts:
-    /// where nothing hides a footprint its rule holds, not its middle.
+    /// Of each pixel what its rule gives of a cell over what that sends to the middles of its
+    /// parts: where nothing hides a footprint its rule holds, not its middle.
     pub(super) fn by_rule(&self, cell: &HiddenCell, by_middles: &[f64]) -> Vec<f64> {
         let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point);
         let ratio = |(footprint, by_middles): (&Vec<WallPoint>, &f64)| match *by_middles {

@@ -16,8 +16,10 @@ use crate::scene::Scene;
 pub(super) struct MayBeLit<'a> {
     scene: &'a Scene,
     direct: DirectLight,
-    /// By pixel: what it may see that reflects.
-    seen: Vec<Side>,
+    /// By pixel: what it may see that reflects; none where that is anything.
+    seen: Vec<Option<Side>>,
+    /// Anything that reflects.
+    anything: Side,
     /// By column: what the beam may light.
     lit: Vec<Side>,
 }
@@ -52,18 +54,22 @@ fn lit(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Side {
 impl<'a> MayBeLit<'a> {
     pub(super) fn new(scene: &'a Scene, spots: Range<usize>) -> Self {
         let beams = Beams::new(scene);
-        let seen = |pixel: usize| {
-            let known = PixelView::new(scene, pixel).end(scene).map(|end| vec![end]);
-            let nothing = || sees_nothing(scene, pixel).then(Vec::new);
-            let mut ends = known.or_else(nothing).unwrap_or_else(|| all_ends(scene));
+        let reflecting = |mut ends: Vec<End>| {
             ends.retain(|(s, _)| !scene.surfaces[*s as usize].is_black());
             Side::new(scene, ends)
+        };
+        let seen = |pixel: usize| {
+            let known = PixelView::new(scene, pixel).end(scene);
+            let nothing = || sees_nothing(scene, pixel).then(Vec::new);
+            let ends = known.map(|end| vec![end]).or_else(nothing);
+            ends.map(reflecting)
         };
         let pixels = (0..scene.camera.pixels()).into_par_iter();
         Self {
             scene,
             direct: DirectLight::new(&beams, &spots),
             seen: pixels.map(seen).collect(),
+            anything: reflecting(all_ends(scene)),
             lit: spots.map(|spot| lit(scene, &beams, spot)).collect(),
         }
     }
@@ -72,7 +78,8 @@ impl<'a> MayBeLit<'a> {
     /// reflects, where the pixel sees nothing, or where between any two ends of a path one lies
     /// behind the other or is black. Shapes in between are not considered, so a yes may be wrong.
     pub(super) fn entry(&self, pixel: usize, column: usize) -> bool {
-        let (scene, seen, lit) = (self.scene, &self.seen[pixel], &self.lit[column]);
+        let (scene, lit) = (self.scene, &self.lit[column]);
+        let seen = self.seen[pixel].as_ref().unwrap_or(&self.anything);
         if seen.ends.is_empty() || lit.ends.is_empty() {
             return false;
         }

@@ -175,6 +175,13 @@ fn what_is_not_the_surface_s_light_is_left_out_or_estimated() {
         "recover done --phi lit.npy --frame-patterns flags.npy --method pinv",
         &["--frame-patterns", "joint"],
     );
+    npy::write(&workspace.path("dark.npy"), &model.map(|_| 0.0)).unwrap();
+    for option in ["--frame-patterns", "--glare-pattern"] {
+        workspace.refuses(
+            &format!("recover done --phi lit.npy {option} dark.npy --method joint"),
+            &["dark.npy is 0 everywhere"],
+        );
+    }
     workspace.refuses(
         "recover done --phi lit.npy --left-out patterns.npy --method joint",
         &["64 × 4", "pixels"],
