@@ -27,6 +27,14 @@
 //!
 //! From a scene five times as far off, three starts, all of 20 draws of the first and of the last
 //! two rows end within five stated errors of the truth.
+//!
+//! The same of a board of 2 × 2 in 4 × 4 elements, past a plate of 1 × 1 in. whose place is free
+//! too: traced light, 16 × 16 pixels, 24 spots, through a machine-vision camera (0.005, 0.05 and
+//! 0.5 s, 4 frames; 0.7 % noise), 20 draws, off by 1°, 0.1 in., 1° and by 0.1 in. of each
+//! coordinate of the plate: MTF 1.000 with the right and with the calibrated geometry, errors over
+//! stated 1.04, 0.96, 0.90 and 1.00, 1.07, 1.13, held 112 of 120
+//! (`tests/physics/calibrated_past.rs`). Where the plate cuts a beam off its place has no slope,
+//! and the search may not end.
 
 mod calibration;
 mod descent;

@@ -90,7 +90,8 @@ fn summed(
     all
 }
 
-/// C D with as few terms as carry it but for this share: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′ Σ′)(V′ᵀ Vᵀ).
+/// C D with as few terms as carry it but for this share: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′
+/// Σ′)(V′ᵀ Vᵀ).
 pub(super) fn compressed(
     (c, d): (&Matrix, &Matrix),
     negligible: f64,
