@@ -70,7 +70,8 @@ impl Line {
 ///   − t̄)/(n − 1), which is at most σ, and is σ where it alone makes the scatter.
 ///
 /// All three matrices are pixels × spots. Entries 0 ± 0 are known to be dark and take no part, nor
-/// do those that met no light: a shadow says nothing of what is beside it. The outcome depends on the own codes only: it may be called again on a larger part of Φcam.
+/// do those that met no light: a shadow says nothing of what is beside it. The outcome depends on
+/// the own codes only: it may be called again on a larger part of Φcam.
 pub fn flag_neighbours(tails: &mut Matrix, flux: &Matrix, stderr: &Matrix) {
     let mut rows = vec![Line::default(); tails.nrows()];
     let mut columns = vec![Line::default(); tails.ncols()];
