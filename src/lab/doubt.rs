@@ -13,7 +13,7 @@ pub(super) use contested::contest;
 use contested::contested;
 use errors::{
     DETERMINED, HALF, alike_untold, by_entries, few_replicates, integrated, overstated, shared,
-    undetermined,
+    undetermined, unseen,
 };
 use misfit::{misfit, outlier};
 
@@ -45,6 +45,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         overstated(judged),
         impossible(found),
         undetermined(found, judged),
+        unseen(found, judged),
         alike_untold(found),
         few_directions(found),
         noise(found),

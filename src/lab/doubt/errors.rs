@@ -85,6 +85,27 @@ pub(super) fn overstated(judged: &Judged) -> Option<String> {
     })
 }
 
+/// A share of an element's variance below which the photographs say nothing of it.
+const UNSEEN: f64 = 1e-3;
+
+/// Elements of `nnls` that reflect more than all where the photographs say nothing of them: no
+/// bound and no error tells that of noise.
+pub(super) fn unseen(found: &Recovered, judged: &Judged) -> Option<String> {
+    let known = judged.determined.as_ref();
+    let known = known.filter(|_| found.method == Method::Nnls)?;
+    let each = known.shares.iter().zip(&found.reflectance);
+    let beyond = each.filter(|(share, rho)| **share < UNSEEN && **rho > 1.0);
+    let values: Vec<f64> = beyond.map(|(_, rho)| *rho).collect();
+    let largest = values.iter().copied().reduce(f64::max)?;
+    Some(format!(
+        "{} of {} elements, up to {}, are not seen at all: the photographs do not say what they \
+         reflect. Use joint, which keeps to 0 to 1",
+        values.len(),
+        found.reflectance.len(),
+        figure(largest, 2)
+    ))
+}
+
 /// Standard errors of a shortest solution that are less than half of what any method can know: they
 /// are those of the directions that the photographs show, and the others are taken for 0.
 pub(super) fn undetermined(found: &Recovered, judged: &Judged) -> Option<String> {

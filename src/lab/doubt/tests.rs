@@ -161,6 +161,37 @@ fn elements_that_cannot_be_told_apart_are_told() {
     }
 }
 
+/// An element whose light is a hundred millionth of the others' has whatever noise makes of it by
+/// `nnls`, which says so; of one that is seen nothing is said.
+#[test]
+fn an_element_that_is_not_seen_is_told() {
+    for (light, unseen) in [(1e-8, true), (1.0, false)] {
+        let camera = Matrix::from_fn(20, 4, |p, j| {
+            (1.0 + libm::sin((p * (j + 2)) as f64)) * if j == 3 { light } else { 1.0 }
+        });
+        let model = MatrixModel::of_sides(camera, Matrix::from_element(4, 1, 1.0), [4, 1]).unwrap();
+        let exact = &model.camera_side * Matrix::from_row_slice(4, 1, &[0.3, 0.7, 0.6, 0.5]);
+        let phi = exact + model.camera_side.columns(3, 1) * (1e-3 / light);
+        let stderr = phi.map(|_| 0.01);
+        let noise = Noise::StandardError(&stderr, Certainty::STATED);
+        let (nuisance, options) = (Nuisance::default(), Options::default());
+        let found = recover_objects(
+            &model,
+            &phi,
+            noise,
+            nuisance,
+            &[Method::Nnls],
+            &options,
+            Control::none(),
+        );
+        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let told = warnings
+            .iter()
+            .any(|w| w.contains("1 of 4 elements, up to"));
+        assert_eq!(told, unseen, "{warnings:?}");
+    }
+}
+
 /// Right photographs whose errors are no product of one by pixel and one by spot: no method says
 /// that nothing explains them, and one whose weights are of that form says what helps. Their errors
 /// estimated from few replicates, those of the picture are told to be too small.
