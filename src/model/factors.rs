@@ -158,13 +158,9 @@ pub(super) fn settled<'a>(
     let walls = divided::settled(
         by,
         |(past, _)| {
-            let all = (count(&of), 1.0);
-            let (cells, share) = if is_smooth {
-                all
-            } else {
-                (FINAL * all.0, share)
-            };
-            divided::can_be_finer(&past.occlusion, cells, share)
+            // With nothing in the way a finer rule costs little.
+            let (times, share) = if is_smooth { (1, 1.0) } else { (FINAL, share) };
+            divided::can_be_finer(&past.occlusion, times * count(&of), share)
         },
         |(_, now), (_, next)| moved(now, next),
         target,
@@ -250,7 +246,6 @@ impl Past<'_> {
             each.fold([0.0; 2], add)
         };
         let lit = |l: usize| laser[l].iter().copied().fold([0.0; 2], add);
-        let unobstructed = |seen: &Vec<Both>| seen.iter().map(|[all, _]| *all).collect::<Vec<_>>();
         let each = cells.iter().zip(&camera);
         let ratio: Vec<Vec<f64>> = each
             .map(|(cell, seen)| self.by_rule(cell, &unobstructed(seen)))
@@ -276,6 +271,11 @@ impl Past<'_> {
         };
         self.footprints.iter().zip(by_middles).map(ratio).collect()
     }
+}
+
+/// What a cell sends with nothing in the way, of what it sends to each pixel.
+pub(super) fn unobstructed(seen: &[Both]) -> Vec<f64> {
+    seen.iter().map(|[all, _]| *all).collect()
 }
 
 /// ‖A′ − A‖/‖A′‖ over all elements.

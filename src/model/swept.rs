@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::cells::HiddenCell;
 use super::effort::Effort;
 use super::error::ModelError;
-use super::factors::{Past, settled};
+use super::factors::{Past, settled, unobstructed};
 use super::kernel::Kernel;
 use super::matrix_model::element_grids;
 use super::obstacles::obstacles;
@@ -85,9 +85,6 @@ fn own_rates(
     let occlusion = &past.occlusion;
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
     let n = cells.len();
-    let unobstructed: Vec<Vec<f64>> = cells.iter().map(|c| occlusion.unobstructed(c)).collect();
-    let each = cells.iter().zip(&unobstructed);
-    let ratio: Vec<Vec<f64>> = each.map(|(cell, own)| past.by_rule(cell, own)).collect();
     let laser: Vec<Vec<Both>> = (0..spots).map(|l| occlusion.laser(l, cells)).collect();
     // What shines is what it is wherever all else is.
     let terms = if occlusion.scene.laser.is_shining() {
@@ -100,6 +97,13 @@ fn own_rates(
     } else {
         Vec::new()
     };
+    let by_middles: Vec<Vec<f64>> = if light.is_empty() {
+        cells.iter().map(|c| occlusion.unobstructed(c)).collect()
+    } else {
+        light.iter().map(|seen| unobstructed(seen)).collect()
+    };
+    let each = cells.iter().zip(&by_middles);
+    let ratio: Vec<Vec<f64>> = each.map(|(cell, own)| past.by_rule(cell, own)).collect();
     let still = |p: usize, q: usize| light.get(q).map_or(0.0, |own| own[p][1]);
     // How the ratio changes differs over an element by much less than the ratio: by its middle.
     let middle = n / 2;
@@ -107,7 +111,7 @@ fn own_rates(
         Some(cell) => sweep.by_rule(
             cell,
             &past.footprints,
-            (&unobstructed[middle], &ratio[middle]),
+            (&by_middles[middle], &ratio[middle]),
         ),
         None => Vec::new(),
     };

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::beam::Beams;
 use super::camera::{PixelView, sees_nothing};
 use super::direct_light::DirectLight;
-use super::visibility::{End, all_ends, all_shapes, may_light, may_reach};
+use super::visibility::{End, all_ends, all_shapes, may_light, may_reach, sends_light};
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
 
@@ -42,12 +42,8 @@ impl Side {
 
 /// What the light of a spot may meet next.
 fn lit(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Side {
-    let sends = |id: ShapeId| {
-        let surface = &scene.surfaces[id as usize];
-        !surface.is_black() || surface.shining().is_some()
-    };
     let mut ends = beams.ends(spot);
-    ends.retain(|(id, _)| sends(*id));
+    ends.retain(|(id, _)| sends_light(scene, *id));
     Side::new(scene, ends)
 }
 

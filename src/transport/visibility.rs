@@ -20,9 +20,14 @@ pub(super) fn may_reach(scene: &Scene, from: &End, t: ShapeId) -> bool {
 
 /// Whether the light that lands on `t`, or with which it shines, may reach `from`.
 pub(super) fn may_light(scene: &Scene, from: &End, t: &End) -> bool {
-    let lit = &scene.surfaces[t.0 as usize];
-    let shines = lit.shining().is_some() && lit.albedo.largest() > 0.0;
-    (shines || !lit.is_black()) && may_face(scene, from, t)
+    sends_light(scene, t.0) && may_face(scene, from, t)
+}
+
+/// Whether light leaves a shape that is lit, or that shines.
+pub(super) fn sends_light(scene: &Scene, id: ShapeId) -> bool {
+    let surface = &scene.surfaces[id as usize];
+    let shines = surface.shining().is_some() && surface.albedo.largest() > 0.0;
+    shines || !surface.is_black()
 }
 
 /// Whether the fronts of two ends may see each other.

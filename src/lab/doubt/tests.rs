@@ -125,6 +125,17 @@ fn right_photographs_are_not_warned_of() {
     }
 }
 
+/// What is said of a method's picture, each entry known to 0.01.
+fn warnings(model: &MatrixModel, phi: &Matrix, method: Method) -> Vec<String> {
+    let stderr = phi.map(|_| 0.01);
+    let noise = Noise::StandardError(&stderr, Certainty::STATED);
+    let (nuisance, options) = (Nuisance::default(), Options::default());
+    let methods = [method];
+    let control = Control::none();
+    let found = recover_objects(model, phi, noise, nuisance, &methods, &options, control);
+    found[0].outcome.as_ref().unwrap()[0].warnings.clone()
+}
+
 /// Two elements of equal columns are known by their sum alone: the shortest solution gives each a
 /// half of it with an error that does not know that, and says so; without the second nothing is
 /// said.
@@ -140,20 +151,7 @@ fn elements_that_cannot_be_told_apart_are_told() {
         let model =
             MatrixModel::of_sides(camera(alike), Matrix::from_element(4, 1, 1.0), [4, 1]).unwrap();
         let exact = &model.camera_side * Matrix::from_row_slice(4, 1, &[0.3, 0.7, 0.6, 0.0]);
-        let stderr = exact.map(|_| 0.01);
-        let noise = Noise::StandardError(&stderr, Certainty::STATED);
-        let methods = [Method::JointUnbounded];
-        let (nuisance, options) = (Nuisance::default(), Options::default());
-        let found = recover_objects(
-            &model,
-            &exact,
-            noise,
-            nuisance,
-            &methods,
-            &options,
-            Control::none(),
-        );
-        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let warnings = warnings(&model, &exact, Method::JointUnbounded);
         let told = warnings
             .iter()
             .any(|w| w.contains("do not determine 2 of 4"));
@@ -172,19 +170,7 @@ fn an_element_that_is_not_seen_is_told() {
         let model = MatrixModel::of_sides(camera, Matrix::from_element(4, 1, 1.0), [4, 1]).unwrap();
         let exact = &model.camera_side * Matrix::from_row_slice(4, 1, &[0.3, 0.7, 0.6, 0.5]);
         let phi = exact + model.camera_side.columns(3, 1) * (1e-3 / light);
-        let stderr = phi.map(|_| 0.01);
-        let noise = Noise::StandardError(&stderr, Certainty::STATED);
-        let (nuisance, options) = (Nuisance::default(), Options::default());
-        let found = recover_objects(
-            &model,
-            &phi,
-            noise,
-            nuisance,
-            &[Method::Nnls],
-            &options,
-            Control::none(),
-        );
-        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let warnings = warnings(&model, &phi, Method::Nnls);
         let told = warnings
             .iter()
             .any(|w| w.contains("1 of 4 elements, up to"));
