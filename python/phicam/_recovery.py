@@ -32,7 +32,7 @@ class Surface:
     reflectance, stderr : ndarray, elements
         The reflectances, and their standard errors: how far the estimate would scatter (linear methods), or how far the
         truth is expected off (``joint-gp``, ``joint-two-valued``). What a linear method drops or damps is not in them: see
-        `resolution`, `bias` and `determined`. None under bounds (``joint``, ``nnls``, ``joint-tv``: ask for bands), and
+        `resolution`, `bias` and `determined`. None under bounds (``joint``, ``nnls``: ask for bands; ``joint-tv``), and
         where errors hang together, as those of ``shared`` and ``factored`` renders do.
     lower, upper : ndarray
         Bands, where they were asked for.

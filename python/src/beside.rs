@@ -53,12 +53,12 @@ impl Given<'_> {
 
     /// Reads its matrices.
     pub fn read(&self) -> PyResult<Beside> {
-        let own = maybe(self.frame_patterns.as_ref(), "frame_patterns")?;
+        let own = pattern(self.frame_patterns.as_ref(), "frame_patterns")?;
         Ok(Beside {
             frame_constant: self.frame_constant,
             patterns: joined(self.frame_polynomial, self.frame(), own)?,
             background: self.background,
-            glare: maybe(self.glare_pattern.as_ref(), "glare_pattern")?,
+            glare: pattern(self.glare_pattern.as_ref(), "glare_pattern")?,
             free_scale: self.free_scale,
             frame_gain: self.frame_gain,
             scale_error: self.scale_error,
@@ -80,6 +80,20 @@ impl Beside {
             scale_error: self.scale_error,
             left_out: self.left_out.as_ref(),
         }
+    }
+}
+
+/// A pattern that is not 0 everywhere, which would change nothing.
+fn pattern(array: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<Matrix>> {
+    match maybe(array, name)? {
+        Some(found) if found.iter().all(|x| *x == 0.0) => {
+            let cause = format!("{name} is 0 everywhere");
+            Err(input(
+                cause,
+                "leave it out, or give the pattern that was meant",
+            ))
+        }
+        found => Ok(found),
     }
 }
 

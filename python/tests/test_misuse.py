@@ -158,6 +158,8 @@ MISUSES = [
     ("photographs of no scene", Input, lambda s, p, t: phicam.import_photographs({"frames": "*.png"}), "scene"),
     ("photographs that are not there", Input, lambda s, p, t: phicam.import_photographs({"frames": "no-*.png"}, s), ""),
     ("a list that is not there", File, lambda s, p, t: phicam.import_photographs(t / "no.toml", s), "no.toml"),
+    ("a pattern of nothing", Input, lambda s, p, t: phicam.recover(p, method="joint", frame_patterns=0 * A), "0 everywhere"),
+    ("bands of no method", Input, lambda s, p, t: phicam.recover(p, method="joint-tv", bands=0.9), "bands"),
     ("saturated photographs", Input, lambda s, p, t: phicam.recover(saturated(p), method="joint"), "saturated"),
     # Folders.
     ("no folder", File, lambda s, p, t: phicam.load(t / "nowhere"), "run.json"),

@@ -58,6 +58,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         (Setting::Tolerance, args.tolerance.is_some()),
         (Setting::Tv, joint.tv.is_some()),
         (Setting::Levels, joint.levels.is_some()),
+        (Setting::Bands, args.bands.is_some()),
         (
             Setting::Weighting,
             joint.weighting == WeightRule::Unweighted,

@@ -124,10 +124,14 @@ fn noise(found: &Recovered) -> Option<String> {
 /// Most elements where a bound holds them.
 fn on_bounds(found: &Recovered) -> Option<String> {
     let (count, all) = (found.bounded(), found.reflectance.len());
+    let more = match found.bands {
+        Some(_) => "",
+        None => ", or ask for --bands",
+    };
     (count as f64 > MOST * all as f64).then(|| {
         format!(
             "{count} of {all} elements sit on a bound: it, not the photographs, decides their \
-             values. Compare with nnls and joint-unbounded, or ask for --bands"
+             values. Compare with nnls and joint-unbounded{more}"
         )
     })
 }

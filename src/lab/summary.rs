@@ -100,7 +100,7 @@ impl RunResults {
                 "share of the traced flux; the model has three surfaces",
             )
         } else {
-            (None, "not traced: the scene's max_bounces is 3")
+            (None, "not traced: the scene's max_bounces leaves it out")
         };
         let rows = [
             (

@@ -17,7 +17,10 @@ pub(super) fn unmodelled(scene: &Scene) -> Vec<String> {
         .filter(|warning| {
             matches!(
                 warning,
-                Warning::SpotsInView(_) | Warning::BeamBlocked(..) | Warning::PixelsBlocked(..)
+                Warning::TooFewBounces(_)
+                    | Warning::SpotsInView(_)
+                    | Warning::BeamBlocked(..)
+                    | Warning::PixelsBlocked(..)
             )
         })
         .map(ToString::to_string)

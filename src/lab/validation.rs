@@ -101,12 +101,6 @@ pub enum ValidationError {
     /// What is beside the model does not fit it.
     #[error(transparent)]
     Beside(#[from] RecoveryError),
-    /// Patterns of other light could be all of the model's.
-    #[error(
-        "other light of this form could be all of the model's light, and nothing is left to test (fit less: a \
-         polynomial of a lower degree, fewer patterns, no background)"
-    )]
-    TakenUp,
     /// Patterns of other light cannot be decomposed.
     #[error(transparent)]
     Linalg(#[from] LinalgError),
@@ -279,7 +273,7 @@ fn beside_other_light(
         other,
         gains,
         eliminated,
-    } = Left::of(&evidence, test, beside)?.ok_or(ValidationError::TakenUp)?;
+    } = Left::of(&evidence, test, beside)?.ok_or(RecoveryError::TakenUp)?;
     let unseen = scale.is_some_and(|[_, _, z]| z <= sidak_threshold(test.significance, 1));
     let nothing = Matrix::from_element(rows, columns, 1.0);
     let left = Evidence {

@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Method, Options, Problem, RecoveryError, WeightRule};
+use super::{Method, Options, Problem, RecoveryError, Setting, WeightRule};
 use crate::num::control::{Control, Steps};
 use crate::num::linalg::{rows_times, svd};
 use crate::num::quadratic::{Bounds, Extents, box_least_squares};
@@ -80,7 +80,10 @@ fn deviate(confidence: f64) -> f64 {
     sidak_threshold(1.0 - confidence, 1)
 }
 
-/// Refuses a confidence without meaning, and methods that know of no error.
+/// Why methods without an error of their own have none.
+const ASSUMED: &str = "has no bands: what its assumption adds is not known from the data";
+
+/// Refuses a confidence without meaning.
 pub(super) fn allowed(method: Method, confidence: f64) -> Result<(), RecoveryError> {
     if !(confidence > 0.0 && confidence < 1.0) {
         return Err(RecoveryError::BadParameter {
@@ -90,14 +93,12 @@ pub(super) fn allowed(method: Method, confidence: f64) -> Result<(), RecoveryErr
             cure: "give a probability between 0 and 1, e.g. 0.95",
         });
     }
-    match method {
-        Method::JointTv | Method::JointTwoValued => Err(RecoveryError::NotForMethod {
-            method,
-            what: "has no bands: what its assumption adds is not known from the data",
-            cure: "ask for bands of joint, nnls or a linear method",
-        }),
-        _ => Ok(()),
-    }
+    Ok(())
+}
+
+/// Why `method` never has bands, if so.
+pub(super) fn never(method: Method) -> Option<&'static str> {
+    (!Setting::Bands.means_something_to(method)).then_some(ASSUMED)
 }
 
 /// The refusal of bands without a noise model.

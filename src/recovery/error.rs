@@ -113,6 +113,12 @@ pub enum RecoveryError {
         /// Which side of the model.
         side: &'static str,
     },
+    /// Patterns of other light could be all of the model's.
+    #[error(
+        "other light of this form could be all of the model's light, and nothing is left to tell (fit less: a \
+         polynomial of a lower degree, fewer patterns, no background)"
+    )]
+    TakenUp,
     /// A parameter without meaning.
     #[error("{name} = {value} has no meaning for {method}; {cure}")]
     BadParameter {

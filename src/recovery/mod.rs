@@ -159,7 +159,10 @@ pub fn recover(
         by(method, problem, options)
     }?;
     if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
-        found.add_gaussian_bands(confidence)?;
+        match bands::never(method) {
+            Some(why) => found.no_bands = Some(why),
+            None => found.add_gaussian_bands(confidence)?,
+        }
     }
     Ok(found)
 }

@@ -97,7 +97,8 @@ impl Setting {
     /// Whether the method does anything with it.
     pub fn means_something_to(self, method: Method) -> bool {
         match self {
-            Setting::Noise | Setting::Bands => true,
+            Setting::Noise => true,
+            Setting::Bands => ![Method::JointTv, Method::JointTwoValued].contains(&method),
             Setting::Rank => method == Method::Tsvd,
             Setting::Damping => [Method::Tikhonov, Method::TikhonovGradient].contains(&method),
             Setting::Tolerance => [

@@ -53,6 +53,8 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Surfaces that light by way of a hidden one meets: wall, hidden surface, wall.
+const THREE_BOUNCES: u32 = 3;
 /// A decade beyond the wavelengths of lasers, F₂ at 157 nm to CO₂ at 10.6 µm, m; and three beyond
 /// their continuous powers, 1 µW to 100 kW, W.
 const WAVELENGTHS: [f64; 2] = [1.6e-8, 1.1e-4];
@@ -63,6 +65,8 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     let mut found = scene.found.clone();
     if scene.hidden().next().is_none() {
         found.push(Warning::NothingHidden);
+    } else if scene.max_bounces < THREE_BOUNCES && !scene.laser.is_shining() {
+        found.push(Warning::TooFewBounces(scene.max_bounces));
     }
     for surface in &scene.surfaces {
         if let Shape::Parallelogram(p) = &surface.shape

@@ -9,6 +9,8 @@ use super::mesh::Defects;
 pub enum Warning {
     /// No surface is hidden: there is nothing to model or recover.
     NothingHidden,
+    /// `max_bounces` that ends before light is back from the hidden surface.
+    TooFewBounces(u32),
     /// Spots that lie in the camera's view, so that the camera sees them directly.
     SpotsInView(Vec<usize>),
     /// Spots that the beam does not reach, and the surface that stops it.
@@ -50,6 +52,10 @@ impl fmt::Display for Warning {
             Self::NothingHidden => write!(
                 f,
                 "no surface is hidden: frames can be rendered, but there is nothing to model or recover"
+            ),
+            Self::TooFewBounces(most) => write!(
+                f,
+                "max_bounces is {most}: light by way of a hidden surface meets 3 surfaces, so frames hold none of it"
             ),
             Self::Wavelength(metres) => write!(
                 f,

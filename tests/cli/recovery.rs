@@ -274,8 +274,26 @@ fn other_light_is_estimated_with_the_object() {
     );
     workspace.refuses(
         "recover done --method joint-tv --bands 0.95",
-        &["joint-tv has no bands"],
+        &["--bands means nothing", "or nnls or joint-gp"],
     );
+}
+
+/// A method without bands is recovered beside one that has them, and it is said why it has none.
+#[test]
+fn a_method_without_bands_is_kept_beside_one_that_has_them() {
+    let workspace = with_run();
+    let line = "recover done --method joint-tv,joint --elements 2x2 --noise 0.2 --bands 0.9";
+    let said = workspace.phicam(line).stderr;
+    assert!(
+        said.contains("joint-tv: it has no bands: what its assumption adds"),
+        "{said}"
+    );
+    let found = objects(workspace.phicam(&format!("{line} --json")));
+    let bands: Vec<(&str, bool)> = found
+        .iter()
+        .map(|o| (o["method"].as_str().unwrap(), o["bands"].is_object()))
+        .collect();
+    assert_eq!(bands, [("joint", true), ("joint-tv", false)]);
 }
 
 #[test]

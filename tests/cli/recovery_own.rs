@@ -175,6 +175,12 @@ fn what_is_not_the_surface_s_light_is_left_out_or_estimated() {
         "recover done --phi lit.npy --frame-patterns flags.npy --method pinv",
         &["--frame-patterns", "joint"],
     );
+    // As many patterns as pixels can be any photograph.
+    npy::write(&workspace.path("any.npy"), &Matrix::identity(64, 64)).unwrap();
+    workspace.refuses(
+        "recover done --phi lit.npy --frame-patterns any.npy --method joint",
+        &["other light of this form could be all of the model's light"],
+    );
     npy::write(&workspace.path("dark.npy"), &model.map(|_| 0.0)).unwrap();
     for option in ["--frame-patterns", "--glare-pattern"] {
         workspace.refuses(

@@ -52,6 +52,7 @@ fn a_dark_scene_is_told() {
     let [check, render] = said(change, "--samples 65536 --estimator shared");
     for text in [check, render] {
         assert!(text.contains("no light reaches the camera"), "{text}");
+        assert!(text.contains("max_bounces is 2: "), "{text}");
     }
 }
 

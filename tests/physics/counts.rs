@@ -4,7 +4,7 @@ use phicam::lab::{Deviation, Errors, Measured, Validation, ValidationError, poly
 use phicam::matrix::Matrix;
 use phicam::num::statistics::binomial_interval;
 use phicam::num::stream::{Key, Sampling, Stream};
-use phicam::recovery::Nuisance;
+use phicam::recovery::{Nuisance, RecoveryError};
 use phicam::scene::Scene;
 use phicam::transport::Traced;
 
@@ -275,5 +275,8 @@ fn a_model_whose_light_is_not_seen_is_no_agreement() {
             .contains("nothing of its light is seen")
     );
     let all = tested(&scene, &dark, (Errors::Independent, 1e-3), 8);
-    assert_eq!(all.unwrap_err(), ValidationError::TakenUp);
+    assert_eq!(
+        all.unwrap_err(),
+        ValidationError::Beside(RecoveryError::TakenUp)
+    );
 }

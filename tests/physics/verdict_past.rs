@@ -147,7 +147,8 @@ fn two_replicates_tell_no_deviation() {
 }
 
 /// Light that frames hold and no model has is told where there is any: a spot that is seen, walls
-/// that light one another, an occluder that is not black, more bounces, a shadow that is ignored.
+/// that light one another, an occluder that is not black, more bounces, a shadow that is ignored;
+/// and that frames of two bounces have none of the model's.
 #[test]
 fn light_that_the_model_lacks_is_told() {
     let told = |scene: &Scene, occlusion| {
@@ -167,6 +168,13 @@ fn light_that_the_model_lacks_is_told() {
     assert_eq!(
         told(&longer, Occlusion::Considered),
         ["light of 4 to 5 bounces"]
+    );
+    let mut shorter = own.clone();
+    shorter.max_bounces = 2;
+    let words = told(&shorter, Occlusion::Considered);
+    assert!(
+        words.len() == 1 && words[0].contains("frames hold none of it"),
+        "{words:?}"
     );
     let view = own.camera.view.at([0.5; 2]).position;
     let seen = own.with_spots_at(&[[view.x, view.y], [1.0, 2.0]]).unwrap();

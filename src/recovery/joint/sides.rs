@@ -35,8 +35,12 @@ fn compress(
     before: f64,
     name: &'static str,
 ) -> Result<(Svd, usize), RecoveryError> {
+    let none = || match before > 0.0 {
+        true => RecoveryError::TakenUp,
+        false => RecoveryError::RankZero { side: name },
+    };
     if side.is_empty() {
-        return Err(RecoveryError::RankZero { side: name });
+        return Err(none());
     }
     let decomposed = svd_to(side, Tolerance::Auto)?;
     let (rank, _) = decomposed.cut(Tolerance::Auto)?;
@@ -52,7 +56,7 @@ fn compress(
         rank
     };
     if rank == 0 {
-        Err(RecoveryError::RankZero { side: name })
+        Err(none())
     } else {
         Ok((decomposed, rank))
     }

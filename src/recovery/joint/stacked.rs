@@ -233,9 +233,7 @@ impl Rows {
 
     fn finish(mut self) -> Result<Triangle, RecoveryError> {
         if self.count == 0 {
-            return Err(RecoveryError::RankZero {
-                side: "model beside its nuisance terms",
-            });
+            return Err(RecoveryError::TakenUp);
         }
         Ok(triangle_of(self.stacked())?)
     }
