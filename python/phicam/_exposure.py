@@ -21,8 +21,8 @@ class Photographs(Phi):
     Attributes
     ----------
     clipped : ndarray, pixels × spots
-        1 where an entry is saturated in every exposure, 0.5 where it is so near that it is low on average, −1 where the
-        converter cut it off below, else 0.
+        1 where an entry is saturated in every exposure, −1 where the converter cut it off below, 0.5 where it is so near to
+        either that it is off on average, else 0.
     counts : tuple of ndarrays, pixels × spots
         What the converter gave, for each exposure time.
     summary : Finding
@@ -123,8 +123,8 @@ def expose(
     if result["saturated"] + result["near"] + result["floored"]:
         cure = "expose for a shorter time or in brackets; a larger `offset` keeps counts above 0"
         text = (
-            f"{result['saturated']} of {result['entries']} entries are saturated, {result['near']} so near to it that they "
-            f"are low on average, {result['floored']} cut off below, see clipped; {cure}"
+            f"{result['saturated']} of {result['entries']} entries are saturated, {result['floored']} cut off below, "
+            f"{result['near']} so near to either that they are off on average, see clipped; {cure}"
         )
         warnings.warn(text, Suspicious, stacklevel=2)
     if result["snr_max"] is not None and result["snr_max"] < 1:

@@ -92,6 +92,7 @@ def calibrate(
     frame_gain: float | None = None,
     free_scale: bool = False,
     error_field: bool = False,
+    background: bool = False,
     elements: tuple[int, int] | int | None = None,
     occlusion: bool = True,
     integration: Integration = "quadrature",
@@ -122,6 +123,8 @@ def calibrate(
     error_field : bool
         Whether what is left over is taken for noise of single pixels and a field of errors that neighbours share; for
         photographs whose noise is not known.
+    background : bool
+        Whether there is other light that all frames share, unknown in each pixel.
     elements : (int, int)
         Elements in place of the scene's, or of 12 × 12 where those are more than 256.
     starts, spread, seed
@@ -163,6 +166,7 @@ def calibrate(
         frame_gain=setting(phi.frame_gain if frame_gain is None else frame_gain, "frame_gain"),
         free_scale=bool(free_scale),
         error_field=bool(error_field),
+        background=bool(background),
         replicates=phi.replicates,
         elements=pair(elements, "elements"),
         considered=bool(occlusion),

@@ -81,7 +81,7 @@ fn thinned(asked: Option<(usize, usize)>, scene: &scene::Scene) -> Option<[usize
 
 /// The geometry, estimated; the text of the calibrated scene beside it.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, replicates, elements,
+#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, background, replicates, elements,
                     considered, integration_name, frame_polynomial, starts, spread, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
@@ -97,6 +97,7 @@ pub fn calibrate<'py>(
     frame_gain: Option<f64>,
     free_scale: bool,
     error_field: bool,
+    background: bool,
     replicates: Option<u32>,
     elements: Option<(usize, usize)>,
     considered: bool,
@@ -116,6 +117,7 @@ pub fn calibrate<'py>(
         frame_gain,
         is_scale_free: free_scale,
         error_field,
+        background,
         replicates,
         elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),

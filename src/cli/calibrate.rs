@@ -111,8 +111,13 @@ fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>, calibrated: &Path) 
     if let Some(degree) = args.frame_polynomial {
         command += &format!(" --frame-polynomial {degree}");
     }
-    if args.free_scale {
-        command += " --free-scale";
+    for (option, is_set) in [
+        ("--background", args.background),
+        ("--free-scale", args.free_scale),
+    ] {
+        if is_set {
+            command += &format!(" {option}");
+        }
     }
     if args.error_field {
         command += " --method joint-gp --error-field";
@@ -134,6 +139,7 @@ fn plan(
         frame_gain: args.frame_gain,
         is_scale_free: args.free_scale,
         error_field: args.error_field,
+        background: args.background,
         replicates,
         elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
@@ -195,6 +201,7 @@ fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation 
     given("--frame-gain", args.frame_gain.map(|x| x.to_string()));
     given("--free-scale", args.free_scale.then(String::new));
     given("--error-field", args.error_field.then(String::new));
+    given("--background", args.background.then(String::new));
     given(
         "--elements",
         args.elements.map(|n| n.map(|x| x.to_string()).join("x")),

@@ -30,7 +30,11 @@ impl Console<'_> {
 
     /// The same whose albedos may be unknown: for what needs none of them.
     pub(super) fn load_any_scene(self, name_or_path: &str) -> Result<Scene, SceneError> {
-        let scene = Scene::load_with(name_or_path, self.also_read)?;
+        self.defined(Scene::load_with(name_or_path, self.also_read)?)
+    }
+
+    /// The scene with the values that were given for its keys.
+    pub(super) fn defined(self, scene: Scene) -> Result<Scene, SceneError> {
         if self.define.is_empty() {
             return Ok(scene);
         }

@@ -70,7 +70,14 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         let cause = format!("{} holds photographs of a real camera", dir.display());
         Failure::new(cause, "give the folder of a rendered run")
     })?;
-    let settings = settings(args, &scene)?;
+    if let (Some(name), Some((key, _))) = (&args.sensor, console.define.first()) {
+        let cause =
+            format!("--sensor replaces all figures of the scene's sensor, -D {key} one of them");
+        let cure =
+            format!("leave one out, or give -D sensor.model='\"{name}\"' for --sensor {name}");
+        return Err(Failure::usage(cause, cure));
+    }
+    let settings = settings(args, &console.defined(scene.clone())?)?;
     let sensor = Sensor::from_settings(&settings)?;
     need::photographs(
         &scene,
@@ -217,7 +224,7 @@ fn remark(result: &Summary, strict: bool, console: Console) -> Result<(), Failur
     let (entries, saturated, floored) = (result.entries, result.saturated, result.floored);
     let near = result.near;
     let cause = format!(
-        "{saturated} of {entries} entries are saturated, {near} so near to it that they are low on average, {floored} cut off below"
+        "{saturated} of {entries} entries are saturated, {floored} cut off below, {near} so near to either that they are off on average"
     );
     let cure = "expose for a shorter time or in --brackets; a larger `offset` keeps counts above 0";
     if saturated + near + floored > 0 {

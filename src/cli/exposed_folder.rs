@@ -4,7 +4,7 @@
 //! | file | content |
 //! | --- | --- |
 //! | phi.npy, phi.stderr.npy | linearised flux and its standard deviation, pixels × spots, W |
-//! | saturated.npy | 1 where an entry is saturated in every exposure, 0.5 where it is only near that, −1 where the converter cut it off below, else 0 |
+//! | saturated.npy | 1 where an entry is saturated in every exposure, −1 where the converter cut it off below, 0.5 where it is only near either, else 0 |
 //! | counts/spot-NNNN.exr, .png | mean counts, a channel for each exposure time; the longest as 16-bit grey |
 //! | exposure.json | sensor, exposure, what came of it |
 

@@ -122,9 +122,10 @@ pub fn main() -> ExitCode {
         also_read: &args.also_read,
         define: &args.define,
     };
-    if let (Some((key, _)), false) = (args.define.first(), args.command.takes_scene()) {
+    let mut defined = args.define.iter().map(|(key, _)| key);
+    if let Some(key) = defined.find(|key| !args.command.defines(key)) {
         let cause = format!("-D {key} changes a scene, and nothing here names one");
-        let cure = "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against";
+        let cure = "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against, `expose` -D sensor.KEY=VALUE";
         let failure = Failure::usage(cause, cure);
         failure.report();
         return ExitCode::from(failure.code(args.command.codes()));

@@ -37,6 +37,7 @@
 //! and the search may not end.
 
 mod calibration;
+mod common;
 mod descent;
 mod describe;
 mod field;
@@ -63,6 +64,7 @@ use super::validation::Integration;
 use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
 use crate::scene::{Parameter, Scene};
 use crate::transport::Control;
+use common::Common;
 use descent::{Problem, first};
 use field::End;
 use geometry::{Geometry, distance};
@@ -95,6 +97,8 @@ pub struct CalibrationPlan {
     pub is_scale_free: bool,
     /// Whether errors that neighbouring pixels share are estimated beside noise of single pixels.
     pub error_field: bool,
+    /// Whether there is light that all frames share, unknown in each pixel.
+    pub background: bool,
     /// Replicates from which the standard errors were estimated; none where they are known.
     pub replicates: Option<u32>,
     /// Elements in place of the scene's.
@@ -159,6 +163,8 @@ impl CalibrationPlan {
             Integration::Quadrature => Fineness::Areas,
         };
         let pictures = picture::priors(&model.places, self.is_scale_free)?;
+        let common = (self.background).then(|| Common::new(photographs, self.error_field));
+        let common = common.transpose()?;
         let problem = Problem {
             geometry: Geometry {
                 scene,
@@ -168,7 +174,11 @@ impl CalibrationPlan {
                 occlusion: self.occlusion,
                 gains,
             },
-            photographs: *photographs,
+            photographs: Unexplained {
+                phi: common.as_ref().map_or(photographs.phi, |own| &own.phi),
+                ..*photographs
+            },
+            common: common.as_ref(),
             pictures: &pictures,
             is_scale_free: self.is_scale_free,
             first: first(photographs),

@@ -26,7 +26,7 @@ pub fn describe_exposure(summary: &Summary, times: &[f64]) -> Finding {
         ("electrons", electrons),
         ("signal/noise", noise),
         ("saturated", share(summary.saturated)),
-        ("near the end", share(summary.near)),
+        ("near an end", share(summary.near)),
         ("cut off below", share(summary.floored)),
     ];
     if times.len() > 1 {

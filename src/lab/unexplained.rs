@@ -36,7 +36,7 @@ pub struct Unexplained<'a> {
 impl Unexplained<'_> {
     /// √w of each pixel of frame l: 1/σ, 0 where the entry does not count or nothing is known of
     /// its error.
-    fn roots(&self, l: usize) -> DVector<f64> {
+    pub(super) fn roots(&self, l: usize) -> DVector<f64> {
         let root = |p: usize| match self.stderr.map(|s| s[(p, l)]) {
             _ if self.left_out.is_some_and(|flags| flags[(p, l)] != 0.0) => 0.0,
             None => 1.0,

@@ -62,6 +62,18 @@ impl Terms {
         summed(&self.element, elements, (&self.camera, &self.laser, spot))
     }
 
+    /// Σ_l w_pl of what frame l shows of each element at albedo 1: pixels × elements by the weights'
+    /// pixels × spots.
+    pub fn mean(&self, weights: &Matrix, elements: usize) -> Matrix {
+        let lit = weights * self.laser.transpose();
+        let mut all = Matrix::zeros(self.camera.nrows(), elements);
+        for (s, j) in self.element.iter().enumerate() {
+            let own = self.camera.column(s).component_mul(&lit.column(s));
+            all.column_mut(*j).axpy(1.0, &own, 1.0);
+        }
+        all
+    }
+
     /// Its rate of change.
     pub fn frame_rate(&self, rate: &TermsRate, spot: usize, elements: usize) -> Matrix {
         let of = |camera, laser| summed(&self.element, elements, (camera, laser, spot));

@@ -27,6 +27,10 @@ const MOST: usize = 400;
 const KEPT: f64 = 1e-6;
 /// A coordinate that is less likely than the likeliest by e to this is not drawn.
 const NEGLIGIBLE: f64 = 38.0;
+/// Probabilities are multiplied down to this, and then kept by their logarithm.
+const LEAST: f64 = 1e-200;
+/// −½ T² below which neighbours are weighed by themselves: what they are multiplied by is large.
+const STEEP: f64 = -20.0;
 
 /// A lattice by a reduced basis, and a target.
 #[derive(Debug, Clone)]
@@ -211,17 +215,11 @@ impl Lattice {
         let mut left = self.y.clone();
         let mut coordinates = vec![0.0; n];
         let mut choices: Vec<(f64, f64)> = Vec::new();
-        let mut log_probability = 0.0;
+        let (mut log_probability, mut probability) = (0.0, 1.0);
         for k in (0..n).rev() {
             let own = self.t[(k, k)];
             let centre = left[k] / own;
-            let log = |z: f64| -0.5 * (own * (z - centre)).powi(2);
-            let top = log(centre.round());
-            let likely = around(centre)
-                .map(|z| (z, log(z) - top))
-                .take_while(|(_, log)| *log > -NEGLIGIBLE);
-            choices.clear();
-            choices.extend(likely.map(|(z, log)| (z, libm::exp(log))));
+            weigh(&mut choices, own * own, centre);
             let all: f64 = choices.iter().map(|c| c.1).sum();
             let mut rest = random.uniform() * all;
             let chosen = choices.iter().find(|(_, weight)| {
@@ -229,14 +227,19 @@ impl Lattice {
                 rest < 0.0
             });
             let (z, weight) = *chosen.unwrap_or(&choices[0]);
-            log_probability += libm::log(weight / all);
+            probability *= weight / all;
+            // One logarithm for many coordinates: each is above e to −NEGLIGIBLE.
+            if probability < LEAST {
+                log_probability += libm::log(probability);
+                probability = 1.0;
+            }
             left.rows_mut(0, k)
                 .axpy(-z, &self.t.column(k).rows(0, k), 1.0);
             coordinates[k] = z;
         }
         Drawn {
             point: self.point(&coordinates),
-            log_probability,
+            log_probability: log_probability + libm::log(probability),
         }
     }
 }
@@ -257,6 +260,40 @@ fn around(centre: f64) -> impl Iterator<Item = f64> {
                 -side * step
             }
     })
+}
+
+/// The integers z [`around`] a centre c with exp −½T²((z − c)² − (z₀ − c)²), z₀ the nearest, down to
+/// e to −[`NEGLIGIBLE`]: with k = |z − z₀| and f = |z₀ − c| it is bᵏ·ᵏ·a^±ᵏ, b = e^−½T², a = e^(T² f).
+fn weigh(choices: &mut Vec<(f64, f64)>, square: f64, centre: f64) {
+    let (half, f) = (-0.5 * square, (centre - centre.round()).abs());
+    choices.clear();
+    choices.push((centre.round(), 1.0));
+    let log = |k: f64, along: f64| half * k * (k - 2.0 * along);
+    if log(1.0, f) <= -NEGLIGIBLE {
+        return;
+    }
+    let (a, b) = (libm::exp(square * f), libm::exp(half));
+    // bᵏ·ᵏ, b²ᵏ⁺¹ and aᵏ.
+    let (mut power, mut next, mut slope) = (1.0, b, 1.0);
+    for (j, z) in (1u32..).zip(around(centre).skip(1)) {
+        let k = f64::from(j.div_ceil(2));
+        let is_towards = j % 2 == 1;
+        let log = log(k, if is_towards { f } else { -f });
+        if log <= -NEGLIGIBLE {
+            return;
+        }
+        if is_towards {
+            power *= next;
+            next *= b * b;
+            slope *= a;
+        }
+        let weight = match (half < STEEP, is_towards) {
+            (true, _) => libm::exp(log),
+            (_, true) => power * slope,
+            (_, false) => power / slope,
+        };
+        choices.push((z, weight));
+    }
 }
 
 /// Σ ln |T_ii|.

@@ -50,10 +50,11 @@ struct Reading {
 /// What the metering frames of an entry say.
 #[derive(Clone, Copy, Debug)]
 struct Metered {
-    /// The longest exposure that they leave room in, or else the shortest.
+    /// The longest exposure that they leave room in above, or else the shortest.
     bracket: usize,
     /// Counts of the metering frame of that exposure.
     counts: f64,
+    /// Whether they leave none above, or below.
     is_near: bool,
 }
 
@@ -63,6 +64,8 @@ struct Dark {
     readings: Vec<Vec<Reading>>,
     /// Mean counts over the pixels, for each exposure time.
     levels: Vec<f64>,
+    /// Whether these stay above 0 counts, noise included; so where there are no dark frames.
+    clears: Vec<bool>,
 }
 
 /// A column of [`Exposed`].
@@ -112,8 +115,15 @@ impl Sensor {
             .map(|pixel| chain.dark(pixel))
             .collect();
         let level = |k: usize| readings.iter().map(|r| r[k].counts).sum::<f64>() / pixels as f64;
-        let levels = (0..laws.len()).map(level).collect();
-        let dark = Dark { readings, levels };
+        let levels: Vec<f64> = (0..laws.len()).map(level).collect();
+        let clears = |level: &f64| {
+            exposure.dark_frames() == 0 || self.figures().clears(self.figures().electrons(*level))
+        };
+        let dark = Dark {
+            readings,
+            clears: levels.iter().map(clears).collect(),
+            levels,
+        };
         let columns: Vec<Column> = (0..spots)
             .into_par_iter()
             .map(|spot| chain.column(spot, &dark))
@@ -193,13 +203,14 @@ impl Chain<'_> {
         for (law, k) in self.laws.iter().zip(0..) {
             let mut stream = self.stream(spot, pixel, METERING + k);
             let (counts, range) = self.figures.frame(law.electrons(flux), &mut stream);
-            let electrons = (counts - self.figures.offset) * self.figures.gain;
+            let electrons = self.figures.electrons(counts);
+            let fits = range != Range::Saturated && self.figures.fits(electrons);
             found = Metered {
                 bracket: k as usize,
                 counts,
-                is_near: range == Range::Saturated || !self.figures.fits(electrons),
+                is_near: !(fits && self.figures.clears(electrons)),
             };
-            if !found.is_near {
+            if fits {
                 break;
             }
         }
@@ -220,8 +231,8 @@ impl Chain<'_> {
         let (reading, own) = (readings[k], dark.readings[pixel][k]);
         let range = match (reading.range, own.range) {
             (Range::Saturated, _) | (_, Range::Saturated) => Range::Saturated,
-            _ if metered.is_near => Range::Near,
             (Range::Floored, _) | (_, Range::Floored) => Range::Floored,
+            _ if metered.is_near || !dark.clears[k] => Range::Near,
             _ => Range::Within,
         };
         let law = &self.laws[k];

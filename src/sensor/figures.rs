@@ -58,9 +58,14 @@ impl Figures {
             .map_or(f64::INFINITY, |bits| f64::from((1u32 << bits) - 1))
     }
 
+    /// Electrons of so many counts.
+    pub(super) fn electrons(&self, counts: f64) -> f64 {
+        (counts - self.offset) * self.gain
+    }
+
     /// Electrons that well or converter hold: min(full well, (top − offset)·K).
     pub(super) fn most_electrons(&self) -> f64 {
-        self.full_well.min((self.top() - self.offset) * self.gain)
+        self.full_well.min(self.electrons(self.top()))
     }
 }
 

@@ -8,8 +8,9 @@ use crate::num::stream::Stream;
 pub enum Range {
     /// Between the ends: the value means what it says.
     Within,
-    /// Every exposure time brings the entry within its noise of the upper end. No frame reached it,
-    /// but the mean of such entries is too low: those that did reach it are not among them.
+    /// Every exposure time brings the entry within its noise of the upper end, or it or its dark
+    /// frames are within theirs of the lower one. No frame reached an end, but the mean of such
+    /// entries is off: those that did reach it are not among them.
     Near,
     /// The full well or the highest count was reached in a frame: the value is too low.
     Saturated,
@@ -70,5 +71,13 @@ impl Figures {
     pub(super) fn fits(&self, mean: f64) -> bool {
         let reach = mean + MARGIN * self.variance(mean).sqrt();
         reach <= self.full_well && reach / self.gain + self.offset < self.top() - 0.5
+    }
+
+    /// Whether frames with `mean` electrons stay above 0 counts, noise included: electrons are never
+    /// fewer than none.
+    pub(super) fn clears(&self, mean: f64) -> bool {
+        let shot = self.variance(mean) - self.read_noise * self.read_noise;
+        let least = (mean - MARGIN * shot.sqrt()).max(0.0) - MARGIN * self.read_noise;
+        self.bits.is_none() || least / self.gain + self.offset >= -0.5
     }
 }

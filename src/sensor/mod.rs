@@ -21,8 +21,9 @@
 //! and what the standard deviation is estimated from, has no error in common with the value.
 //! (Chosen by n̄ itself, entries that saturate about every other time are low by up to 0.4 standard
 //! deviations; weighted by a σ from n̄ itself, a mean is low by an electron.) An entry that even
-//! the shortest exposure brings nearer to the end is marked ([`Range::Near`]). A saturated entry
-//! keeps the value at which it is cut off, and is marked ([`Range::Saturated`]).
+//! the shortest exposure brings nearer to the end is marked ([`Range::Near`]), and so is one whose
+//! metering frame, or whose dark frames, are so near to 0 counts. A saturated entry keeps the value
+//! at which it is cut off, and is marked ([`Range::Saturated`]).
 //!
 //! Last, each finished entry is multiplied by 1 + ρ·N(0, 1): the relative noise of the published
 //! simulation, which is no stage of a sensor.

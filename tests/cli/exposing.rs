@@ -173,6 +173,20 @@ fn the_table_of_the_scene_is_used_and_the_command_line_goes_before_it() {
     assert_eq!(other["times"], serde_json::json!([2.0, 0.1]));
     assert!((other["glare_to_signal"].as_f64().unwrap() / ratio - 2.0).abs() < 1e-12);
     assert_eq!(other["ambient"], 1e-15);
+    // Its figures are no part of the render; a sensor that replaces them leaves none to be changed.
+    let other = account("expose done --replace --json -D sensor.read_noise=4 -D sensor.offset=7");
+    let figures =
+        ["read_noise", "offset", "gain"].map(|key| other["sensor"][key].as_f64().unwrap());
+    assert_eq!(figures, [4.0, 7.0, 1.413]);
+    assert_eq!(other["scene_hash"], own["scene_hash"]);
+    workspace.refuses(
+        "expose done -D sensor.gain=2 --sensor ccd",
+        &["-D sensor.gain", "-D sensor.model='\"ccd\"'"],
+    );
+    workspace.refuses(
+        "expose done -D camera.pixels=[2,2]",
+        &["-D camera.pixels changes a scene", "-D sensor.KEY=VALUE"],
+    );
     // Another sensor keeps the exposure, and none of the figures.
     let other = account("expose done --replace --json --sensor machine-vision");
     assert_eq!(other["sensor"]["read_noise"], 3.1);

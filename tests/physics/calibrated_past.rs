@@ -53,6 +53,7 @@ fn calibrated(scene: &Scene, light: [&Matrix; 3], sigma: Option<f64>) -> Calibra
         frame_gain: None,
         is_scale_free: false,
         error_field: false,
+        background: false,
         replicates: None,
         elements: Some([4; 2]),
         occlusion: Occlusion::Considered,

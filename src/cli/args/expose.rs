@@ -53,7 +53,7 @@ pub(in crate::cli) struct ExposeArgs {
     /// Where phi.stderr.npy comes from; the render's own standard error is added to both
     #[arg(long, value_enum, default_value_t = StatedBy::Counts)]
     pub stderr: StatedBy,
-    /// Refuse photographs with saturated or cut-off entries, or such that are near to it
+    /// Refuse photographs with saturated or cut-off entries, or such that are near to either
     #[arg(long)]
     pub strict: bool,
     /// Replace photographs with other settings, once these are whole

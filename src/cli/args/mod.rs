@@ -141,16 +141,17 @@ impl Command {
     pub(in crate::cli) const SCHEDULED: [&str; 6] =
         ["plan", "shard", "status", "merge", "slurm", "clean"];
 
-    /// Whether it reads a scene that is named in its arguments.
-    pub(in crate::cli) fn takes_scene(&self) -> bool {
+    /// Whether it takes another value of a key of the scene: where it reads a scene that is named in
+    /// its arguments, and `expose` for its sensor, which is no part of a render.
+    pub(in crate::cli) fn defines(&self, key: &str) -> bool {
         match self {
+            Self::Expose(_) => key.starts_with("sensor."),
             Self::Validate(args) => args.against.is_some(),
             Self::Recover(_)
             | Self::Calibrate(_)
             | Self::View(_)
             | Self::Stack(_)
             | Self::Locate(_)
-            | Self::Expose(_)
             | Self::Serve(_)
             | Self::Target(_)
             | Self::Shard(_)

@@ -10,7 +10,8 @@
 
 use nalgebra::DVector;
 
-use super::geometry::Geometry;
+use super::common::Common;
+use super::geometry::{Geometry, Light};
 use super::picture::Prior;
 use super::posterior::{Seen, Slope, Value};
 use crate::lab::error::LabError;
@@ -37,7 +38,10 @@ const SETTLED: f64 = 0.02;
 /// What is to be found, and from what.
 pub(super) struct Problem<'a> {
     pub geometry: Geometry<'a>,
+    /// Less their means over the frames where there is light that all share.
     pub photographs: Unexplained<'a>,
+    /// That light.
+    pub common: Option<&'a Common>,
     /// σ_k; none where nothing is known of an unknown.
     pub priors: Vec<Option<f64>>,
     pub pictures: &'a [Prior],
@@ -86,6 +90,7 @@ impl<'a> Problem<'a> {
     pub(super) fn seen(&self, factor: f64) -> Seen<'a> {
         Seen {
             photographs: self.photographs,
+            common: self.common,
             factor,
             columns: self.geometry.scene.camera.columns,
             cosines: self.cosines,
@@ -94,6 +99,15 @@ impl<'a> Problem<'a> {
 
     pub(super) fn unknowns(&self) -> usize {
         self.geometry.unknowns()
+    }
+
+    /// The light at `values` less what all frames may share of it.
+    pub(super) fn light(&self, values: &[f64], noise: f64, rates: bool) -> Result<Light, LabError> {
+        let light = self.geometry.light(values, noise, rates)?;
+        Ok(match self.common {
+            Some(common) => light.less_means(common.shares()),
+            None => light,
+        })
     }
 
     /// −ln of the prior of the unknowns.
@@ -111,7 +125,7 @@ impl<'a> Problem<'a> {
         prior: Option<&Prior>,
     ) -> Result<State, LabError> {
         let seen = self.seen(factor);
-        let light = self.geometry.light(values, self.relative(factor), true)?;
+        let light = self.light(values, self.relative(factor), true)?;
         let normal = seen.normal(&light)?;
         let prior = match prior {
             Some(prior) => prior.clone(),
@@ -136,7 +150,7 @@ impl<'a> Problem<'a> {
         factor: f64,
         prior: &Prior,
     ) -> Result<Option<f64>, LabError> {
-        let light = match self.geometry.light(values, self.relative(factor), false) {
+        let light = match self.light(values, self.relative(factor), false) {
             Ok(light) => light,
             Err(LabError::Scene(_)) => return Ok(None),
             Err(other) => return Err(other),

@@ -112,7 +112,7 @@ impl End {
         let left = match self.field {
             None => value.chi2,
             Some(_) => {
-                let light = problem.geometry.light(values, 0.0, false)?;
+                let light = problem.light(values, 0.0, false)?;
                 seen.residue(&light, &value.rho)?
             }
         };

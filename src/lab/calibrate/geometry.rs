@@ -51,6 +51,8 @@ pub(super) struct Light {
     gains: Vec<f64>,
     elements: usize,
     rates: Vec<Rate>,
+    /// What is taken out of every frame, pixels × elements.
+    mean: Option<Matrix>,
 }
 
 /// Distance between the middles of the view and of the first hidden surface.
@@ -136,6 +138,7 @@ impl Geometry<'_> {
             gains: gains.to_vec(),
             elements,
             rates,
+            mean: None,
         })
     }
 
@@ -171,12 +174,28 @@ impl Light {
         1.0 + self.gains.get(l).copied().unwrap_or(0.0)
     }
 
-    /// What frame l shows of each element at albedo 1, pixels × elements, W.
-    pub(super) fn frame(&self, l: usize) -> Matrix {
-        self.terms.frame(l, self.elements) * self.gain(l)
+    /// The same less its means over the frames by these weights, pixels × frames.
+    pub(super) fn less_means(self, shares: &Matrix) -> Self {
+        let gains = |l: usize| self.gain(l);
+        let shares = Matrix::from_fn(shares.nrows(), shares.ncols(), |p, l| {
+            shares[(p, l)] * gains(l)
+        });
+        Self {
+            mean: Some(self.terms.mean(&shares, self.elements)),
+            ..self
+        }
     }
 
-    /// ∂ of that by unknown k; none where it is 0.
+    /// What frame l shows of each element at albedo 1, pixels × elements, W.
+    pub(super) fn frame(&self, l: usize) -> Matrix {
+        let own = self.terms.frame(l, self.elements) * self.gain(l);
+        match &self.mean {
+            Some(mean) => own - mean,
+            None => own,
+        }
+    }
+
+    /// ∂ of that by unknown k, means not taken out; none where it is 0.
     pub(super) fn frame_rate(&self, l: usize, k: usize) -> Option<Matrix> {
         let n = self.elements;
         match self.rates.get(k) {

@@ -13,6 +13,7 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
+use super::common::Common;
 use super::geometry::Light;
 use super::picture::{Normal, Prior, white};
 use crate::lab::error::LabError;
@@ -28,6 +29,8 @@ pub(super) const BLOCKS: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<'a> {
     pub photographs: Unexplained<'a>,
+    /// Light that all frames share.
+    pub common: Option<&'a Common>,
     pub factor: f64,
     /// Columns of the picture's pixels.
     pub columns: usize,
@@ -118,13 +121,15 @@ impl Seen<'_> {
             square: 0.0,
             count: 0.0,
         };
-        Ok(frames.iter().fold(none, |mut all, frame| {
+        let mut all = frames.iter().fold(none, |mut all, frame| {
             all.h += &frame.h;
             all.side += &frame.side;
             all.square += frame.square;
             all.count += frame.count;
             all
-        }))
+        });
+        all.count -= self.common.map_or(0.0, Common::directions);
+        Ok(all)
     }
 
     /// ‖y‖².
@@ -211,13 +216,17 @@ impl Seen<'_> {
         let first = (0..self.frames())
             .into_par_iter()
             .map(|l| self.columns_of(light, l, &value.rho, &covariance, unknowns));
-        let first: Vec<Columns> = first.collect::<Result<_, _>>()?;
+        let mut first: Vec<Columns> = first.collect::<Result<_, _>>()?;
+        if let Some(common) = self.common {
+            let mut all: Vec<&mut Matrix> = first.iter_mut().map(|own| &mut own.b).collect();
+            common.take_out(&mut all);
+        }
         let n = light.elements();
         let mut side = Matrix::zeros(n, unknowns);
         let (mut known, mut occam) = (DVector::zeros(unknowns), DVector::zeros(unknowns));
         for own in &first {
             side += &own.side;
-            known += &own.known;
+            known += DVector::from_fn(unknowns, |k, _| own.b.column(k).norm_squared());
             occam += &own.occam;
         }
         let towards = prior.root.tr_mul(&side);
@@ -273,10 +282,8 @@ impl Seen<'_> {
                 occam[k] = spread.dot(&rate);
             }
         }
-        let known = DVector::from_fn(unknowns, |k, _| b.column(k).norm_squared());
         Ok(Columns {
             side: tr_product(&a, &b),
-            known,
             occam,
             b,
         })
@@ -311,11 +318,11 @@ impl Seen<'_> {
     }
 }
 
-/// B of a frame: pixels × unknowns, AᵀB, ‖B_k‖², tr(P Aᵀ∂_kA).
+/// B of a frame: pixels × unknowns, AᵀB, tr(P Aᵀ∂_kA). Light that all frames share is no part of A,
+/// so that both are what they would be without it in B.
 struct Columns {
     b: Matrix,
     side: Matrix,
-    known: DVector<f64>,
     occam: DVector<f64>,
 }
 

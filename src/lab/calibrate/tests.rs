@@ -13,7 +13,7 @@ use crate::num::cosines::from_cosines;
 use crate::recovery::ErrorField;
 use crate::scene::file::SceneFile;
 
-fn small(name: &str, pixels: u32) -> Scene {
+pub(super) fn small(name: &str, pixels: u32) -> Scene {
     let mut file = SceneFile::builtin(name).unwrap();
     file.camera.pixels = [pixels; 2];
     if let Some(laser) = &mut file.laser {
@@ -23,7 +23,7 @@ fn small(name: &str, pixels: u32) -> Scene {
 }
 
 /// The bench with two spots and 4 × 3 pixels.
-fn of_two_spots() -> Scene {
+pub(super) fn of_two_spots() -> Scene {
     let mut file = SceneFile::builtin("bench").unwrap();
     file.camera.pixels = [4, 3];
     Scene::new(&file, None)
@@ -33,7 +33,7 @@ fn of_two_spots() -> Scene {
 }
 
 /// Photographs of `scene` with n × n elements and relative noise, and their standard errors.
-fn photographs(scene: &Scene, n: usize, level: f64, seed: u64) -> (Matrix, Matrix) {
+pub(super) fn photographs(scene: &Scene, n: usize, level: f64, seed: u64) -> (Matrix, Matrix) {
     let model = MatrixModel::with(scene, Kernel::Physical, Some([n; 2]), Occlusion::Considered);
     let phi = model.unwrap().phi();
     let stderr = &phi * level;
@@ -42,7 +42,7 @@ fn photographs(scene: &Scene, n: usize, level: f64, seed: u64) -> (Matrix, Matri
     (noisy, stderr)
 }
 
-fn plan(free: &[&str], n: usize) -> CalibrationPlan {
+pub(super) fn plan(free: &[&str], n: usize) -> CalibrationPlan {
     let free = free.iter().map(|name| Free {
         name: (*name).to_owned(),
         sigma: None,
@@ -52,6 +52,7 @@ fn plan(free: &[&str], n: usize) -> CalibrationPlan {
         frame_gain: None,
         is_scale_free: false,
         error_field: false,
+        background: false,
         replicates: None,
         elements: Some([n; 2]),
         occlusion: Occlusion::Considered,
@@ -62,7 +63,7 @@ fn plan(free: &[&str], n: usize) -> CalibrationPlan {
     }
 }
 
-fn unexplained<'a>(phi: &'a Matrix, stderr: &'a Matrix) -> Unexplained<'a> {
+pub(super) fn unexplained<'a>(phi: &'a Matrix, stderr: &'a Matrix) -> Unexplained<'a> {
     Unexplained {
         phi,
         stderr: Some(stderr),
@@ -72,12 +73,12 @@ fn unexplained<'a>(phi: &'a Matrix, stderr: &'a Matrix) -> Unexplained<'a> {
 }
 
 /// Priors of 2 × 2 elements.
-fn pictures(scene: &Scene) -> Vec<Prior> {
+pub(super) fn pictures(scene: &Scene) -> Vec<Prior> {
     let model = MatrixModel::with(scene, Kernel::Physical, Some([2; 2]), Occlusion::Ignored);
     priors(&model.unwrap().places, false).unwrap()
 }
 
-fn problem<'a>(
+pub(super) fn problem<'a>(
     scene: &'a Scene,
     parameters: &'a [Parameter],
     photographs: Unexplained<'a>,
@@ -98,6 +99,7 @@ fn problem<'a>(
         pictures,
         is_scale_free: false,
         first: first(&photographs),
+        common: None,
         cosines: None,
         log_errors: 0.0,
     }

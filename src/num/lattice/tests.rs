@@ -178,3 +178,32 @@ fn what_cannot_be_reduced_is_told() {
     let bad = DMatrix::from_element(3, 2, f64::NAN);
     assert!(Lattice::new(&bad, &DVector::zeros(3), None).is_err());
 }
+
+/// Weights by multiplication are the exponentials that they stand for, of flat and of steep laws.
+#[test]
+fn weights_of_integers_are_the_normal_law_s() {
+    for square in [1e-3, 0.04, 1.0, 9.0, 39.0, 41.0, 1e4, 1e9] {
+        for centre in [0.0, 0.5, -0.5, 0.3, -7.49, 1e6 + 0.25] {
+            let log = |z: f64| -0.5 * square * (z - centre) * (z - centre);
+            let top = log(centre.round());
+            let mut choices = Vec::new();
+            weigh(&mut choices, square, centre);
+            let mut least = 1.0_f64;
+            for (&(z, weight), near) in choices.iter().zip(around(centre)) {
+                let direct = libm::exp(log(z) - top);
+                assert!(
+                    z == near && (weight / direct - 1.0).abs() < 1e-11,
+                    "{square} {centre} {z}"
+                );
+                least = least.min(weight);
+            }
+            let count = choices.len();
+            let side = (2.0 * NEGLIGIBLE / square).sqrt();
+            assert!(
+                ((count as f64) - 2.0 * side).abs() <= 2.0,
+                "{square}: {count}"
+            );
+            assert!(least > libm::exp(-NEGLIGIBLE) * (1.0 - 1e-11));
+        }
+    }
+}

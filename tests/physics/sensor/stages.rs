@@ -202,6 +202,49 @@ fn saturation_is_as_frequent_as_its_tail() {
     assert!(samples.iter().all(|x| *x <= 110.0));
 }
 
+/// Of entries that are not marked the mean is the light's, however near to 0 counts it lies: those
+/// whose frames or dark frames come near are marked, all of them where none is far.
+#[test]
+fn what_is_not_marked_is_right_near_zero_counts() {
+    let figures = Figures {
+        read_noise: 8.0,
+        bits: Some(16),
+        offset: 10.0,
+        ..Figures::IDEAL
+    };
+    let right = |figures: Figures, mean: f64, dark_frames: u32| {
+        let exposure = Exposure::new(&[1.0], 4, dark_frames).unwrap();
+        let light = uniform(mean).resize(SIDE, 30, 0.0);
+        let exposed = expose(figures, &light, &exposure, 9);
+        let marked = exposed.range.iter().zip(&exposed.flux);
+        let kept: Vec<f64> = marked
+            .filter(|(range, _)| **range == Range::Within)
+            .map(|(_, flux)| *flux)
+            .collect();
+        let truth = light[0];
+        let n = kept.len() as f64;
+        if n > 1.0 {
+            let off = kept.iter().sum::<f64>() / n / truth - 1.0;
+            let sigma = 8.02 / mean / 2.0;
+            assert!(off.abs() < 4.0 * sigma / n.sqrt(), "{mean}: {off} of {n}");
+        }
+        kept.len()
+    };
+    // Eight deviations of a metering frame are 64 counts, 54 above the offset.
+    assert_eq!(right(figures, 3.0, 0), 0);
+    for mean in [30.0, 45.0, 54.0] {
+        right(figures, mean, 0);
+    }
+    let all = right(figures, 110.0, 0);
+    assert_eq!(all, 30 * SIDE);
+    assert_eq!(right(figures, 110.0, 16), 0);
+    let raised = Figures {
+        offset: 100.0,
+        ..figures
+    };
+    assert_eq!(right(raised, 110.0, 16), 30 * SIDE);
+}
+
 #[test]
 fn energy_is_conserved_through_the_ideal_sensor() {
     let flux = Matrix::from_fn(64, 50, |p, l| {
