@@ -12,6 +12,9 @@ use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p, sidak_threshold};
 use crate::num::summation::mean_and_stderr;
 
+/// Share of a model that its integration may leave out, beyond which agreement is no evidence.
+pub(super) const VAGUE: f64 = 0.5;
+
 /// One entry of Φcam, traced and modelled.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Entry {
@@ -139,7 +142,8 @@ pub(super) fn share(significance: f64, deviations: bool) -> f64 {
 ///
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to
 /// rounding. Where every entry is left out, or dark in both, there is no evidence and no agreement;
-/// nor where what was fitted first has as many unknowns as there are entries.
+/// nor where what was fitted first has as many unknowns as there are entries, nor where nothing
+/// speaks against a model of which half may be its integration ([`VAGUE`]).
 pub fn agree(
     evidence: Evidence<'_>,
     test: Test,
@@ -185,14 +189,18 @@ pub fn agree(
         .filter(|_| evident)
         .map(|d| score(evidence, test, share, d, &remaining));
     let scored = score.as_ref().is_none_or(|s| !s.rejects());
+    let passes = chi2_p >= share && largest_p >= share && scored;
     // Of what counts, relative to the model's norm. To a dark model everything is unbounded, but
     // nothing remains nothing.
     let norm = |f: &dyn Fn(usize) -> f64| counted.iter().map(|i| f(*i).powi(2)).sum::<f64>().sqrt();
     let modelled = norm(&|i| evidence.model[i]);
     let relative = |x: f64| if x > 0.0 { x / modelled } else { 0.0 };
+    let discretisation = relative(norm(&|i| evidence.bound(i)));
+    // Against a model that is known to its half nothing speaks, and nothing speaks for it.
+    let evident = evident && !(passes && discretisation > VAGUE);
     let scale = Residual::new(evidence, test, Weights::Alike).fit(evidence.model, &(0..columns));
     let agreement = Agreement {
-        agrees: evident && chi2_p >= share && largest_p >= share && scored,
+        agrees: evident && passes,
         evidence: evident,
         kernel: String::new(),
         integration: String::new(),
@@ -213,7 +221,7 @@ pub fn agree(
         largest_p,
         relative_difference: relative(norm(&|i| evidence.traced[i] - evidence.model[i])),
         relative_noise: relative(norm(&|i| evidence.stderr[i])),
-        relative_discretisation: relative(norm(&|i| evidence.bound(i))),
+        relative_discretisation: discretisation,
         worst_bound: worst_bound(&evidence, &counted),
         best_scale: 1.0 + scale.map_or(0.0, |s| s.value),
         best_scale_stderr: scale.map_or(0.0, |s| s.stderr),

@@ -7,11 +7,11 @@ use std::ops::Range;
 
 use super::error::LabError;
 use super::options::Opt;
+use super::problem::lit;
 use super::registered::{Registered, prepared};
 use super::study::{Sharing, Study, Work};
 use super::traced::{SHARES, TracedSpots, share};
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, converged};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
 use crate::transport::{Budget, Control, Estimator, Plan, render};
@@ -167,7 +167,7 @@ impl Study for ConvergenceTasks {
 
     fn context(&self, _: Control<'_>) -> Result<Reference, LabError> {
         self.check()?;
-        let integral = converged(&self.scene, Kernel::Physical, Extent::FULL)?;
+        let integral = lit(&self.scene)?;
         Ok(Reference {
             bound: integral.bound.norm() / integral.phi.norm(),
             phi: integral.phi,

@@ -16,6 +16,7 @@ mod describe;
 mod found;
 mod frames;
 mod likelihood;
+mod mistaken;
 mod order;
 mod picture;
 mod place;
@@ -27,6 +28,7 @@ use rayon::prelude::*;
 
 pub use found::{Bright, Grid, Likelihood, Located};
 pub(super) use frames::covariance_root;
+pub use mistaken::Mistaken;
 pub use order::Order;
 
 use super::error::LabError;
@@ -39,6 +41,7 @@ use crate::scene::Scene;
 use crate::transport::Control;
 use found::Picture;
 use frames::TermsOf;
+use mistaken::{Rearranged, likeliest};
 use order::Fault;
 use picture::Pictured;
 use place::{Lengths, Place, frames_of, parabola};
@@ -163,6 +166,9 @@ impl LocatedPlan {
         let best = all().max_by(|a, b| a.log_likelihood().total_cmp(&b.log_likelihood()));
         let best = best.ok_or(LabError::DARK)?;
         let order = self.order(scene, photographs, &lengths, control)?;
+        let log_likelihood = best.log_likelihood();
+        let stated = [log_likelihood, best.fit.misfit];
+        let mistaken = self.mistaken(scene, photographs, (&lengths, stated), control)?;
         let there = altered
             .apply(scene, best.size)
             .unwrap_or_else(|| scene.clone());
@@ -186,10 +192,12 @@ impl LocatedPlan {
                 .next()
                 .map_or([0.0; 3], |(_, s)| s.shape.at([0.5; 2]).position.to_array()),
             curve: curve.iter().map(likelihood).collect(),
+            log_likelihood,
             noise: best.fit.noise,
             elements: model.albedo.len(),
             picture: self.picture(&there, photographs, &lengths)?,
             order,
+            mistaken,
             entries: photographs.counted(),
             frames: photographs.phi.ncols(),
             is_noise_known: photographs.stderr.is_some(),
@@ -232,6 +240,43 @@ impl LocatedPlan {
         }))
     }
 
+    /// The order that the stated one is mistaken for, if so: `stated` are its log likelihood and
+    /// misfit.
+    fn mistaken(
+        &self,
+        scene: &Scene,
+        photographs: &Unexplained<'_>,
+        (lengths, stated): (&Lengths, [f64; 2]),
+        control: Control<'_>,
+    ) -> Result<Option<Mistaken>, LabError> {
+        if self.orders == 0 || photographs.phi.ncols() < 2 {
+            return Ok(None);
+        }
+        let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
+        let element: Vec<usize> = (0..model.albedo.len()).collect();
+        let terms = TermsOf::centres(&model, &element);
+        let root = covariance_root(&model.places, lengths.fixed)?;
+        let frame = [scene.camera.columns, scene.camera.rows];
+        let all = Rearranged::all(frame, photographs.phi.ncols());
+        let Some(order) = likeliest(photographs, terms, &root, all)? else {
+            return Ok(None);
+        };
+        let again = Self { orders: 0, ..*self };
+        let quiet = Control {
+            progress: &|_| (),
+            ..control
+        };
+        let own = order.of(photographs);
+        let found = again.locate(scene, &own.unexplained(photographs.patterns), quiet)?;
+        let misfit = found.curve.iter().find(|at| at.log_likelihood == 0.0);
+        let misfit = misfit.map_or(f64::INFINITY, |at| at.misfit);
+        Ok(Mistaken::new(
+            order.what,
+            stated,
+            [found.log_likelihood, misfit],
+        ))
+    }
+
     /// The test of the spots' order, elements by their centres.
     fn order(
         &self,
@@ -245,12 +290,7 @@ impl LocatedPlan {
         }
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
         let element: Vec<usize> = (0..model.albedo.len()).collect();
-        let terms = TermsOf {
-            camera: &model.camera_side,
-            laser: &model.laser_side,
-            element: &element,
-            elements: element.len(),
-        };
+        let terms = TermsOf::centres(&model, &element);
         let root = covariance_root(&model.places, lengths.fixed)?;
         let tried = [self.orders, self.seed];
         order::order(photographs, terms, &root, tried, control).map_err(|fault| match fault {

@@ -247,7 +247,7 @@ pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
-pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Order};
+pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order};
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,

@@ -1,9 +1,11 @@
 //! The inverse problem of a matrix model.
 
+use super::error::LabError;
 use super::validation::Integration;
 use crate::matrix::Matrix;
 use crate::model::{
-    Effort, ElementGrid, Factors, Kernel, MatrixModel, ModelError, Occlusion, element_grids,
+    Converged, Effort, ElementGrid, Extent, Factors, Kernel, MatrixModel, ModelError, Occlusion,
+    converged, element_grids,
 };
 use crate::recovery::{Problem, RecoveryError, Terms};
 use crate::scene::Scene;
@@ -34,6 +36,19 @@ pub fn inverted(
         MatrixModel::over_areas(scene, kernel, elements, occlusion, effort)
     } else {
         MatrixModel::with(scene, kernel, elements, occlusion)
+    }
+}
+
+/// The light of the model that a study compares with, integrated until it has converged.
+///
+/// # Errors
+/// Those of [`converged`]; [`LabError::DARK`]: of darkness nothing can be compared.
+pub(super) fn lit(scene: &Scene) -> Result<Converged, LabError> {
+    let found = converged(scene, Kernel::Physical, Extent::FULL)?;
+    if found.phi.amax() > 0.0 {
+        Ok(found)
+    } else {
+        Err(LabError::DARK)
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod causes;
 
-use super::agreement::{Agreement, Entry, EntryBound, share};
+use super::agreement::{Agreement, Entry, EntryBound, VAGUE, share};
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
 use super::gains::words;
 use super::score::{Deviation, Score};
@@ -33,6 +33,14 @@ impl Agreement {
                 self.kernel,
                 figure(self.best_scale, 3),
                 figure(self.best_scale_stderr, 2)
+            );
+        }
+        if !self.evidence && self.relative_discretisation > VAGUE {
+            return format!(
+                "no evidence on the {} model: of its light {} % may be what its integration leaves out{left_out} \
+                 (make pixels, spots or elements smaller, or move what cuts through them)",
+                self.kernel,
+                figure(100.0 * self.relative_discretisation, 2)
             );
         }
         if !self.evidence {

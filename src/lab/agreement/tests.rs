@@ -148,3 +148,18 @@ fn entries_without_error_are_compared_to_rounding() {
     );
     assert!(!nothing.agrees && !nothing.evidence);
 }
+
+/// Agreement with a model that may be off by most of itself is no evidence; disagreement beyond all
+/// of that is.
+#[test]
+fn agreement_within_a_bound_of_half_the_model_is_no_evidence() {
+    let of = |model: f64, bound: f64| verdict(1, model, Some(bound), Errors::Independent, 1e-3);
+    let known = of(1.2, 0.4 * 1.2);
+    assert!(known.evidence && known.agrees);
+    let vague = of(1.2, 0.6 * 1.2);
+    assert!(!vague.evidence && !vague.agrees);
+    let words = "no evidence on the  model: of its light 60 % may be";
+    assert!(vague.verdict().starts_with(words), "{}", vague.verdict());
+    let wrong = of(4.0, 0.6 * 4.0);
+    assert!(wrong.evidence && !wrong.agrees);
+}

@@ -45,7 +45,8 @@ impl Order {
         };
         format!(
             "{told}. Of {tried} random orders {as_likely} are as likely as the stated one (p = {}); \
-             misfit {} as stated, at least {} in the others.",
+             misfit {} as stated, at least {} in the others. Frames up to 8 places too early or too \
+             late, or backwards, and photographs mirrored or turned were tried too.",
             figure(p, 2),
             figure(misfit, 3),
             figure(least_misfit, 3)
@@ -54,19 +55,37 @@ impl Order {
 }
 
 impl Located {
-    /// Whether the largest likelihood lies within the range, and the order of the spots is not by
-    /// chance.
+    /// Whether the largest likelihood lies within the range, and the order of the spots is neither
+    /// by chance nor mistaken.
     pub fn is_found(&self) -> bool {
         let by_chance = self.order.and_then(|order| order.is_by_chance());
-        self.size.is_some() && by_chance != Some(true)
+        self.size.is_some() && by_chance != Some(true) && self.mistaken.is_none()
+    }
+
+    /// Whether the photographs belong to their spots.
+    fn ordered(&self) -> String {
+        match (&self.mistaken, self.order) {
+            (_, None) => "Whether the photographs belong to their spots was not asked.".to_owned(),
+            (None, Some(order)) => order.sentence(),
+            (Some(other), Some(order)) if order.is_by_chance() == Some(true) => {
+                format!("{} They fit better if {}.", order.sentence(), other.what)
+            }
+            (Some(other), Some(_)) => format!(
+                "The photographs are NOT IN ORDER: {}. Turned back they are likelier by e^{}, and \
+                 their misfit is {}. Import them in the right order.",
+                other.what,
+                figure(other.log_likelier, 2),
+                figure(other.misfit, 3)
+            ),
+        }
     }
 
     fn sentence(&self) -> String {
         let unit = &self.unit;
         let Some(size) = self.size else {
             return format!(
-                "{}: the likelihood grows up to an end of what was tried. Widen the range (--from, \
-                 --to), or these photographs do not tell it.",
+                "{}: the likelihood grows up to an end of what was tried. Widen the range (--range \
+                 LOW,HIGH), or these photographs do not tell it.",
                 self.what
             );
         };
@@ -199,10 +218,7 @@ impl Describe for Located {
         let title = format!("Where it is: {}, {}", self.what, self.scene);
         let mut notes = vec![self.errors(), self.explained()];
         notes.extend(self.brightest());
-        notes.push(self.order.map_or_else(
-            || "Whether the photographs belong to their spots was not asked.".to_owned(),
-            |order| order.sentence(),
-        ));
+        notes.push(self.ordered());
         let points = |of: fn(&super::Likelihood) -> f64| -> Vec<[f64; 2]> {
             self.curve.iter().map(|at| [at.size, of(at)]).collect()
         };

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::mistaken::Mistaken;
 use super::order::Order;
 
 /// How likely one size is.
@@ -77,6 +78,8 @@ pub struct Located {
     pub middle: [f64; 3],
     /// Sizes tried, growing.
     pub curve: Vec<Likelihood>,
+    /// ln p(Φ) of the likeliest size tried, up to what is the same in every order of the photographs.
+    pub log_likelihood: f64,
     /// Standard deviation of what is not explained, in units of the stated errors (of Φcam's, W,
     /// where none are stated).
     pub noise: f64,
@@ -86,6 +89,8 @@ pub struct Located {
     pub picture: Option<Picture>,
     /// Whether the photographs belong to their spots.
     pub order: Option<Order>,
+    /// An order that is easily mistaken for the right one and in which they are likelier.
+    pub mistaken: Option<Mistaken>,
     /// Entries that count.
     pub entries: usize,
     /// Frames.

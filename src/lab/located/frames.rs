@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
+use crate::model::MatrixModel;
 use crate::num::linalg::{LinalgError, columns_times, svd, tr_product};
 
 /// What frame l says of the reflectances ρ, other light being whatever fits best:
@@ -32,6 +33,18 @@ pub(super) struct TermsOf<'a> {
     pub element: &'a [usize],
     /// Number of elements.
     pub elements: usize,
+}
+
+impl<'a> TermsOf<'a> {
+    /// Each element by its centre; `element` is 0, 1, ….
+    pub(super) fn centres(model: &'a MatrixModel, element: &'a [usize]) -> Self {
+        Self {
+            camera: &model.camera_side,
+            laser: &model.laser_side,
+            element,
+            elements: element.len(),
+        }
+    }
 }
 
 /// What a frame says of the camera's side alone: weighted, without the patterns.

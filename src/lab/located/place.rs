@@ -59,12 +59,7 @@ pub(super) fn frames_of(
             element: &terms.element,
             elements,
         },
-        None => TermsOf {
-            camera: &model.camera_side,
-            laser: &model.laser_side,
-            element: &own,
-            elements,
-        },
+        None => TermsOf::centres(model, &own),
     };
     Frame::all(photographs, terms)
 }

@@ -6,6 +6,7 @@ use crate::lab::certainty::Certainty;
 use crate::lab::error::LabError;
 use crate::lab::evidence::Test;
 use crate::lab::options::{ESTIMATORS, Opt, SAMPLERS};
+use crate::lab::problem::lit;
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study, Work};
 use crate::matrix::Matrix;
@@ -133,7 +134,7 @@ impl Study for PowerTasks {
     }
 
     fn context(&self, _: Control<'_>) -> Result<Models, LabError> {
-        let right = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
+        let right = lit(&self.scene)?.phi;
         let wrong = wrong_models(&self.scene, &right)?.into_iter();
         let sized = |(name, model): (String, Matrix)| {
             let size = (&model - &right).norm() / right.norm();

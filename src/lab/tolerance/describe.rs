@@ -4,7 +4,7 @@ use super::results::{Misplacement, Sensitivity, Tolerance};
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Place, Plot, Table, listed,
 };
-use crate::num::digits::{figure, perhaps};
+use crate::num::digits::figure;
 
 impl Describe for Tolerance {
     fn describe(&self) -> Finding {
@@ -40,11 +40,17 @@ impl Tolerance {
                 listed(&units.filter_map(first).collect::<Vec<_>>())
             )
         };
+        let Some(mtf) = self.mtf else {
+            return format!(
+                "The picture of {} is flat, or of one element, and has no MTF: how much each error of geometry changes the light stands below.",
+                self.scene
+            );
+        };
         format!(
             "With the right geometry and a noise of {} of each entry, joint recovers {} at an MTF raw of {}; {found}.",
             figure(self.noise, 2),
             self.scene,
-            perhaps(self.mtf, 3)
+            figure(mtf, 3)
         )
     }
 
@@ -52,7 +58,10 @@ impl Tolerance {
     /// published study.
     fn needed(&self) -> String {
         let wished = figure(self.wished, 2);
-        if self.mtf.is_none_or(|mtf| mtf <= self.wished) {
+        let Some(mtf) = self.mtf else {
+            return "What must be measured how well, no MTF tells here. What light itself tells of the geometry `phicam calibrate` finds.".to_owned();
+        };
+        if mtf <= self.wished {
             return format!(
                 "An MTF of {wished} is not reached with the right geometry either: less noise is needed first, not a better measurement."
             );

@@ -1,6 +1,6 @@
 //! The study in tasks: each one thing misplaced by one size.
 
-use crate::lab::problem::problem;
+use crate::lab::problem::{lit, problem};
 use serde::{Deserialize, Serialize};
 
 use super::results::{Misplacement, Sensitivity, Tolerance};
@@ -122,7 +122,7 @@ impl Study for ToleranceTasks {
     }
 
     fn context(&self, _: Control<'_>) -> Result<Bench, LabError> {
-        let truth = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
+        let truth = lit(&self.scene)?.phi;
         let photograph = |seed| {
             let mut normal = normal(seed);
             let stderr = truth.map(|x| x * self.noise);

@@ -1,0 +1,183 @@
+//! Whether photographs are in an order that is easily mistaken for the right one.
+//!
+//! Against random orders one that is off by a single frame looks right: neighbouring spots light
+//! much the same. So frames that follow each other by a few places too early or too late, or
+//! backwards, and photographs that are mirrored or turned are tried too, at the stated place; with
+//! the likeliest of them the search is made again.
+
+use serde::Serialize;
+
+use super::frames::{Frame, Side, TermsOf};
+use super::likelihood::Fit;
+use crate::lab::unexplained::Unexplained;
+use crate::matrix::Matrix;
+use crate::num::linalg::LinalgError;
+
+/// Frames too early or too late that are tried.
+const MOST_SHIFT: usize = 8;
+/// An order is likelier if the photographs are by e to this, and it leaves at most this part of
+/// what the stated one leaves: what a model lacks is no independent noise, which the first takes it
+/// for.
+const TELLS: f64 = 5.0;
+const LESS: f64 = 0.9;
+
+/// An order in which the photographs are likelier than in the stated one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mistaken {
+    /// What is wrong with the stated one, in words.
+    pub what: String,
+    /// ln of how much likelier they are, each at its own place.
+    pub log_likelier: f64,
+    /// Misfit in this order.
+    pub misfit: f64,
+}
+
+/// Where frames and pixels of the stated order belong.
+#[derive(Clone, Debug)]
+pub(super) struct Rearranged {
+    pub(super) what: String,
+    /// The frame that is taken for each spot, and the pixel for each pixel.
+    frames: Vec<usize>,
+    pixels: Vec<usize>,
+}
+
+/// Photographs as owned matrices.
+pub(super) struct Photographs {
+    phi: Matrix,
+    stderr: Option<Matrix>,
+    left_out: Option<Matrix>,
+}
+
+impl Photographs {
+    pub(super) fn unexplained<'a>(&'a self, patterns: Option<&'a Matrix>) -> Unexplained<'a> {
+        Unexplained {
+            phi: &self.phi,
+            stderr: self.stderr.as_ref(),
+            left_out: self.left_out.as_ref(),
+            patterns,
+        }
+    }
+}
+
+impl Rearranged {
+    /// All that are tried, of so many frames of columns × rows pixels.
+    pub(super) fn all([columns, rows]: [usize; 2], frames: usize) -> Vec<Self> {
+        let pixels = columns * rows;
+        let own: Vec<usize> = (0..pixels).collect();
+        let mut all = Vec::new();
+        let most = MOST_SHIFT.min((frames - 1) / 2);
+        let late = |k: usize, of: &dyn Fn(usize) -> usize| -> Vec<usize> {
+            (0..frames).map(|l| of((l + k) % frames)).collect()
+        };
+        let backwards = |l: usize| frames - 1 - l;
+        let words = |k: usize| match k {
+            0 => String::new(),
+            k if k <= most => format!("{k} too late"),
+            k => format!("{} too early", frames - k),
+        };
+        let shifts = || (0..=most).chain(frames - most..frames);
+        for k in shifts() {
+            let (is_stated, place) = (k == 0, words(k));
+            if !is_stated {
+                all.push((
+                    format!("each frame stands {place}"),
+                    late(k, &|l| l),
+                    own.clone(),
+                ));
+            }
+            if frames > 2 {
+                let place = if is_stated {
+                    place
+                } else {
+                    format!(", {place}")
+                };
+                let what = format!("the frames stand backwards{place}");
+                all.push((what, late(k, &backwards), own.clone()));
+            }
+        }
+        let at = |of: &dyn Fn(usize, usize) -> [usize; 2]| -> Vec<usize> {
+            let each = (0..pixels).map(|p| of(p % columns, p / columns));
+            each.map(|[u, v]| u + v * columns).collect()
+        };
+        let stated: Vec<usize> = (0..frames).collect();
+        for (what, pixels) in [
+            (
+                "photographs are mirrored left to right",
+                at(&|u, v| [columns - 1 - u, v]),
+            ),
+            (
+                "photographs stand upside down, mirrored",
+                at(&|u, v| [u, rows - 1 - v]),
+            ),
+            (
+                "photographs stand upside down",
+                at(&|u, v| [columns - 1 - u, rows - 1 - v]),
+            ),
+        ] {
+            all.push((what.to_owned(), stated.clone(), pixels));
+        }
+        if columns == rows {
+            let what = "columns and rows of the photographs are exchanged".to_owned();
+            all.push((what, stated, at(&|u, v| [v, u])));
+        }
+        all.into_iter()
+            .map(|(what, frames, pixels)| Self {
+                what,
+                frames,
+                pixels,
+            })
+            .collect()
+    }
+
+    /// The photographs in this order.
+    pub(super) fn of(&self, stated: &Unexplained<'_>) -> Photographs {
+        let in_order = |m: &Matrix| {
+            Matrix::from_fn(m.nrows(), m.ncols(), |p, l| {
+                m[(self.pixels[p], self.frames[l])]
+            })
+        };
+        Photographs {
+            phi: in_order(stated.phi),
+            stderr: stated.stderr.map(in_order),
+            left_out: stated.left_out.map(in_order),
+        }
+    }
+}
+
+/// The likeliest order of `all` at the place of `terms`; none where that is the stated one.
+pub(super) fn likeliest(
+    of: &Unexplained<'_>,
+    terms: TermsOf<'_>,
+    root: &Matrix,
+    all: Vec<Rearranged>,
+) -> Result<Option<Rearranged>, LinalgError> {
+    let fit = |of: &Unexplained<'_>| -> Result<f64, LinalgError> {
+        let sides = Side::all(of, terms.camera)?;
+        let frames = sides.iter().enumerate().map(|(l, s)| s.lit(terms, l));
+        let frames: Vec<Frame> = frames.collect();
+        let found = Fit::new(&Frame::sum(frames.iter(), terms.elements), root)?;
+        Ok(found.map_or(f64::NEG_INFINITY, |fit| fit.log_likelihood))
+    };
+    let mut best = (fit(of)?, None);
+    for order in all {
+        let found = fit(&order.of(of).unexplained(of.patterns))?;
+        if found > best.0 {
+            best = (found, Some(order));
+        }
+    }
+    Ok(best.1)
+}
+
+impl Mistaken {
+    /// Of photographs whose stated order has this likelihood and misfit; none where that of the
+    /// other one says no more.
+    pub(super) fn new(what: String, stated: [f64; 2], other: [f64; 2]) -> Option<Self> {
+        let log_likelier = other[0] - stated[0];
+        let misfit = other[1];
+        (log_likelier > TELLS && misfit < LESS * stated[1]).then_some(Self {
+            what,
+            log_likelier,
+            misfit,
+        })
+    }
+}
