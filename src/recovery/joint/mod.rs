@@ -1,5 +1,6 @@
 //! Methods over all pixels and spots at once.
 
+mod apart;
 pub(super) mod bounded;
 mod branch;
 mod conditional;
@@ -19,6 +20,7 @@ mod khatri_rao;
 mod levels;
 mod linear;
 mod neighbours;
+mod part;
 mod pattern_lattice;
 mod pattern_likelihood;
 mod pattern_search;

@@ -1,40 +1,34 @@
 //! Two levels that the elements keep to within a spread.
 //!
 //! That a picture has two reflectances and no more makes its standard errors small, and where it is
-//! not so they are wrong. So the photographs are asked whether each element may differ from its
-//! level,
+//! not so they are wrong. So the photographs are asked whether elements differ from their level
+//! ([`super::part`]).
 //!
-//! > x = ℓ + τ n,   n ~ N(0, 1),   d ~ N(R ℓ, L Lᵀ),   L Lᵀ = 1 + τ² R Rᵀ,
-//!
-//! ℓ the levels of a pattern. L⁻¹R and L⁻¹d are again those of two levels, the evidence is less by
-//! ln det L, and given ℓ
-//!
-//! > x ~ N(M (ℓ + τ² Rᵀd), τ² M),   M = (1 + τ² RᵀR)⁻¹.
-//!
-//! Beforehand patterns are as likely as where the levels are exact, and τ = 0 as all other τ
-//! together, of which each up to the largest of [`SPREADS`] is as likely (Gelman 2006); one of
-//! these stands for those that are nearer to it than to others by their ratio.
+//! Beforehand patterns are as likely as where the levels are exact, and that these are so as all
+//! else together. One half of that is a spread τ of all elements, each τ up to the largest of
+//! [`SPREADS`] as likely (Gelman 2006), of which one of these stands for those that are nearer to it
+//! than to others by their ratio. The other half are single elements that are of neither level,
+//! each as likely ([`super::apart`]), the others exact, or as likely of the likeliest spread.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::fields::{self, Fields};
-use super::levels::{LevelFit, possible};
+use super::apart;
+use super::fields::Fields;
+use super::part::{Part, Whitened};
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_sums::{Moments, Summed};
-use crate::num::linalg::{Svd, rows_times, svd};
-use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::Patterns;
 use crate::recovery::RecoveryError;
 
 /// Spreads τ that are tried, from hardly any to no levels at all.
 const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
-/// Patterns that are drawn for one of them.
-const DRAWS: usize = 16_000;
-/// Patterns with their levels that are drawn from all that were met, and tries to draw possible
-/// levels.
-const DRAWN: usize = 200;
-const TRIES: usize = 100;
+
+/// How likely it is beforehand that levels are exact, that all elements differ from theirs, and that
+/// one does.
+const EXACT: f64 = 0.5;
+const SPREAD: f64 = 0.25;
+const APART: f64 = 0.25;
 
 /// How likely each of [`SPREADS`] is beforehand, together 1.
 pub(super) fn beforehand() -> [f64; SPREADS.len()] {
@@ -71,14 +65,6 @@ impl Spread {
     }
 }
 
-/// One spread's share.
-struct Part {
-    summed: Summed,
-    log_evidence: f64,
-    /// E (x_j − shown_j)².
-    square: DVector<f64>,
-}
-
 /// Of a picture of two levels that are not given, its pattern and its values; `exact` are the sums
 /// over patterns of these fields where the levels are exact.
 pub(super) fn sum(
@@ -86,21 +72,46 @@ pub(super) fn sum(
     (sizes, exact): (&[Fields], &Summed),
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Spread, RecoveryError> {
-    let axes = svd(likelihood.r)?;
-    let parts: Result<Vec<Option<Part>>, RecoveryError> = SPREADS
+    let of = (light, shown);
+    let n = light.len();
+    let spreads: Result<Vec<Option<Part>>, RecoveryError> = SPREADS
         .par_iter()
-        .map(|tau| part(likelihood, sizes, (&axes, *tau), (light, shown)))
+        .map(|tau| {
+            let white = Whitened::new(likelihood, DVector::from_element(n, tau * tau))?;
+            Part::new(likelihood, sizes, &white, of)
+        })
         .collect();
-    let parts: Vec<(f64, f64, Part)> = SPREADS
+    // Each with the share of all that is believed beforehand: half of it is for exact levels.
+    let mut parts: Vec<(f64, Part)> = Vec::new();
+    let mut likeliest = (f64::NEG_INFINITY, 0.0, 0.0);
+    for ((tau, before), part) in SPREADS.into_iter().zip(beforehand()).zip(spreads?) {
+        let Some(part) = part else { continue };
+        let log = part.log_evidence + libm::log(before);
+        if log > likeliest.0 {
+            likeliest = (log, tau, before);
+        }
+        parts.push((SPREAD * before, part));
+    }
+    let (_, tau, before) = likeliest;
+    let single: Vec<(usize, f64, f64)> = apart::elements(likelihood, light)
         .into_iter()
-        .zip(beforehand())
-        .zip(parts?)
-        .filter_map(|((tau, before), part)| Some((tau, before, part?)))
+        .flat_map(|element| [(element, 0.0, 0.5), (element, tau, 0.5 * before)])
+        .filter(|(_, _, share)| *share > 0.0)
         .collect();
-    // ln of each share: half of all that is believed beforehand is for exact levels.
+    let single: Result<Vec<Option<(f64, Part)>>, RecoveryError> = single
+        .into_par_iter()
+        .map(|(element, tau, share)| {
+            let Some(white) = apart::whitened(likelihood, element, tau)? else {
+                return Ok(None);
+            };
+            let part = Part::new(likelihood, sizes, &white, of)?;
+            Ok(part.map(|part| (APART * share / n as f64, part)))
+        })
+        .collect();
+    parts.extend(single?.into_iter().flatten());
     let logs = parts
         .iter()
-        .map(|(_, before, part)| part.log_evidence + libm::log(*before));
+        .map(|(share, part)| part.log_evidence + libm::log(share / EXACT));
     let top = logs.clone().fold(exact.log_evidence, f64::max);
     let weights: Vec<f64> = logs.map(|log| libm::exp(log - top)).collect();
     let own = libm::exp(exact.log_evidence - top);
@@ -112,104 +123,17 @@ pub(super) fn sum(
             .scaled(own / all / exact.patterns.moments.weight),
     ];
     let mut square = exact.patterns.moments.square_about(shown) * (own / all);
-    for ((_, _, part), weight) in parts.iter().zip(&weights) {
+    for ((_, part), weight) in parts.iter().zip(&weights) {
         let of = &part.summed.patterns.moments;
         sums.push(of.scaled(weight / all / of.weight));
         square += &part.square * (weight / all);
     }
-    let largest = parts.iter().zip(&weights);
-    let largest = largest.max_by(|a, b| a.1.total_cmp(b.1));
     Ok(Spread {
         moments: Moments::together(&sums),
         exact: own / all,
-        likeliest: largest.map_or(0.0, |((tau, _, _), _)| *tau),
+        likeliest: tau,
         error: square.map(f64::sqrt),
     })
-}
-
-/// The sums at one spread, along the singular vectors of R = U S Vᵀ: with e = 1 + τ² s² a row of
-/// L⁻¹R is s vᵀ/√e, and x of levels ℓ is ℓ + V (τ² s/e)(Uᵀd − S Vᵀℓ) on average.
-fn part(
-    likelihood: &PatternLikelihood<'_>,
-    sizes: &[Fields],
-    (axes, tau): (&Svd, f64),
-    (light, shown): (&[bool], &DVector<f64>),
-) -> Result<Option<Part>, RecoveryError> {
-    let s = &axes.sigma;
-    let excess = s.map(|s| 1.0 + (tau * s).powi(2));
-    let along = axes.u.tr_mul(likelihood.d);
-    let beside = (likelihood.d - &axes.u * &along).norm_squared();
-    let scale = s.zip_map(&excess, |s, e| s / e.sqrt());
-    let r = rows_times(axes.vt.clone(), &scale);
-    let d = along.zip_map(&excess, |d, e| d / e.sqrt());
-    let own = PatternLikelihood {
-        control: likelihood.control,
-        ..PatternLikelihood::new(&r, &d, None)
-    };
-    let Some(summed) = fields::sum(&own, sizes, &[light.to_vec()], (DRAWS, None))? else {
-        return Ok(None);
-    };
-    let told = s.zip_map(&excess, |s, e| (tau * s).powi(2) / e);
-    let share = axes.vt.map(|v| v * v).tr_mul(&told);
-    let mut square = share.map(|share| tau * tau * (1.0 - share).max(0.0));
-    let gain = s.zip_map(&excess, |s, e| tau * tau * s / e);
-    let drawn = draw(&summed, &own);
-    let each = 1.0 / drawn.len() as f64;
-    for (light, levels) in drawn {
-        let level = DVector::from_fn(light.len(), |j, _| levels[usize::from(light[j])]);
-        let left = &along - (&axes.vt * &level).component_mul(s);
-        let mean = level + axes.vt.tr_mul(&left.component_mul(&gain));
-        square += (mean - shown).map(|off| off * off * each);
-    }
-    let log_det: f64 = excess.iter().map(|e| libm::log(*e)).sum();
-    Ok(Some(Part {
-        log_evidence: summed.log_evidence - 0.5 * (log_det + beside),
-        summed,
-        square,
-    }))
-}
-
-/// Some patterns in proportion to their weights, with levels of each as likely as they are.
-pub(super) fn draw<'a>(
-    summed: &'a Summed,
-    likelihood: &PatternLikelihood<'_>,
-) -> Vec<(&'a Vec<bool>, [f64; 2])> {
-    let key = Key {
-        seed: 3,
-        spot: 0,
-        pixel: 0,
-        block: 0,
-    };
-    let random = &mut Stream::new(Sampling::Pcg, key);
-    let patterns = &summed.patterns;
-    let mut weights: Vec<(&Vec<bool>, &f64)> = patterns.weights.iter().collect();
-    weights.sort_unstable_by_key(|of| of.0);
-    let step = patterns.moments.weight / DRAWN as f64;
-    let mut next = random.uniform() * step;
-    let mut drawn = Vec::with_capacity(DRAWN);
-    for (light, weight) in weights {
-        next -= weight;
-        while next < 0.0 {
-            drawn.extend(levels(likelihood, light, random).map(|levels| (light, levels)));
-            next += step;
-        }
-    }
-    drawn
-}
-
-/// Levels of a pattern, as likely as they are.
-fn levels(
-    likelihood: &PatternLikelihood<'_>,
-    light: &[bool],
-    random: &mut Stream,
-) -> Option<[f64; 2]> {
-    if likelihood.given.is_some() {
-        return likelihood.given;
-    }
-    let lit = likelihood.lit(light);
-    let fit = LevelFit::new(likelihood.d, &(&likelihood.all - &lit), &lit)?;
-    let mut tries = (0..TRIES).map(|_| fit.draw([random.normal(), random.normal()]));
-    tries.find(|levels| possible(*levels))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 use super::*;
 use crate::num::quadrature::Rule;
 use crate::recovery::bench::normal_stream;
+use crate::recovery::joint::fields;
 use nalgebra::DMatrix;
 
 /// By hand: (0, √(0.003·0.01)], … of 0.3.
@@ -25,20 +26,22 @@ fn if_alike() -> [f64; 16] {
     all
 }
 
-/// ln of Σ P(s) 2 ∫∫ N(d; R ℓ, 1 + τ² R Rᵀ) da db over all patterns s, but for (2π)⁻²; and E (x −
-/// shown)², by Gauss–Legendre on 60 × 60 levels and inverses of whole matrices.
+/// ln of Σ P(s) 2 ∫∫ N(d; R ℓ, 1 + R S Rᵀ) da db over all patterns s, but for (2π)⁻², S the variances
+/// of elements about their levels; and E (x − shown)², by Gauss–Legendre on 60 × 60 levels and
+/// inverses of whole matrices.
 fn by_hand(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
-    tau: f64,
+    variances: [f64; 4],
     beforehand: &[f64; 16],
 ) -> (f64, DVector<f64>) {
     let one = DMatrix::<f64>::identity(4, 4);
-    let covariance = &one + r * r.transpose() * (tau * tau);
+    let own = DMatrix::from_diagonal(&DVector::from_row_slice(&variances));
+    let covariance = &one + r * &own * r.transpose();
     let det = covariance.determinant();
     let inverse = covariance.try_inverse().unwrap();
-    let gain = r.transpose() * &inverse * (tau * tau);
-    let variance = (&one - &gain * r) * (tau * tau);
+    let gain = &own * r.transpose() * &inverse;
+    let variance = (&one - &gain * r) * &own;
     let rule = Rule::gauss_legendre(60);
     let (mut sum, mut square) = (0.0, DVector::zeros(4));
     for (pattern, share) in beforehand.iter().enumerate() {
@@ -80,16 +83,35 @@ fn errors_are_those_of_all_patterns_levels_and_spreads() {
             let exact = fields::sum(&likelihood, sizes, &[], (4000, None));
             let exact = exact.unwrap().unwrap();
             let found = sum(&likelihood, (sizes, &exact), (&light, &shown)).unwrap();
-            let parts = SPREADS.map(|tau| by_hand(&r, &d, tau, &beforehand));
-            let own = by_hand(&r, &d, 0.0, &beforehand);
-            let others: Vec<f64> = parts
+            let of = |variances: [f64; 4]| by_hand(&r, &d, variances, &beforehand);
+            let own = of([0.0; 4]);
+            let mut parts: Vec<(f64, (f64, DVector<f64>))> = SPREADS
                 .iter()
                 .zip(BEFOREHAND)
-                .map(|((log, _), before)| before * libm::exp(log - own.0))
+                .map(|(tau, before)| (0.5 * before, of([tau * tau; 4])))
+                .collect();
+            // Single elements that are of neither level.
+            parts.extend((0..4).map(|apart| {
+                let variances = std::array::from_fn(|j| if j == apart { 0.09 } else { 0.0 });
+                (0.0625, of(variances))
+            }));
+            let likeliest = SPREADS
+                .iter()
+                .position(|tau| *tau == found.likeliest)
+                .unwrap();
+            let tau = found.likeliest;
+            parts.extend((0..4).map(|apart| {
+                let more = |j: usize| if j == apart { 0.09 } else { 0.0 };
+                let variances = std::array::from_fn(|j| tau * tau + more(j));
+                (0.0625 * BEFOREHAND[likeliest], of(variances))
+            }));
+            let others: Vec<f64> = parts
+                .iter()
+                .map(|(before, (log, _))| before * libm::exp(log - own.0))
                 .collect();
             let all = 1.0 + others.iter().sum::<f64>();
             let mut square = own.1 / all;
-            for ((_, of), weight) in parts.iter().zip(&others) {
+            for ((_, (_, of)), weight) in parts.iter().zip(&others) {
                 square += of * (weight / all);
             }
             let told = format!("{truth:?} {noise}: {} {}", found.exact, all.recip());

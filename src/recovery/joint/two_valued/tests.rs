@@ -2,6 +2,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
+use crate::recovery::joint::part;
 use crate::recovery::{Nuisance, recover};
 
 pub(super) fn noisy(
@@ -231,7 +232,7 @@ fn drawn_patterns_make_up_for_those_that_are_not_listed() {
         };
         assert!(listed < 0.7, "{given:?}: {listed}");
         assert!(disagreement < 0.05, "{given:?}: {disagreement}");
-        let drawn = spread::draw(&sampled, &likelihood);
+        let drawn = part::draw(&sampled, &likelihood);
         let mean = |j: usize| {
             let levels = drawn.iter().map(|of| of.1[usize::from(of.0[j])]);
             levels.sum::<f64>() / drawn.len() as f64
