@@ -7,7 +7,7 @@
 //!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
-//! centroid. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
+//! centroid. A sphere is taken for facets that touch it, which shrink with the parts. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
 //! and large meshes are asked ray by ray. How finely footprints and spots are divided for this is
 //! up to [`super::divided`].
 
@@ -100,7 +100,9 @@ impl<'a> Obstructed<'a> {
     /// Whether wall and obstacles are flat, so that shadows can be followed as they move.
     pub(super) fn is_flat(&self) -> bool {
         let mut patches = self.pixels.iter().flatten();
-        self.opaque.is_flat() && patches.all(|p| p.corners.is_some())
+        let is_flat = |id: ShapeId| self.scene.surfaces[id as usize].shape.is_flat();
+        let flat = |p: &Patch| p.corners.is_some() && p.whole.surface.is_some_and(is_flat);
+        self.opaque.is_flat() && patches.all(flat)
     }
 
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
@@ -159,7 +161,7 @@ impl<'a> Obstructed<'a> {
             let open = patch.open && self.is_free(patch.whole.position, to, wall, &Blockers::Any);
             return if open { whole } else { 0.0 };
         };
-        let asked = hidden.asked(corners);
+        let asked = hidden.asked(corners, Some(wall));
         let seen = patch.seen.iter().map(Vec::as_slice);
         let shadows = met.iter().map(|s| &hidden.shadows[*s]);
         if !pieces.past(seen, corners, shadows) && patch.open && asked.none() {
@@ -167,12 +169,18 @@ impl<'a> Obstructed<'a> {
         }
         let light = |(area, middle): (f64, DVec3)| {
             if area > 0.0 {
-                towards(&wall_point::seen_piece(self.scene, wall, middle, area))
+                towards(&wall_point::seen_piece(
+                    self.scene,
+                    &patch.whole,
+                    middle,
+                    area,
+                ))
             } else {
                 0.0
             }
         };
-        let free = |middle| self.is_free(middle, to, wall, &asked);
+        let on_wall = |middle| wall_point::on_wall(self.scene, &patch.whole, middle);
+        let free = |middle| self.is_free(on_wall(middle), to, wall, &asked);
         let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
         pieces.iter().map(over).sum()
     }
@@ -233,7 +241,7 @@ impl<'a> Obstructed<'a> {
             let free = is_free(cell.point.position, &Blockers::Any);
             return if free { all } else { 0.0 };
         };
-        let asked = hidden.asked(corners);
+        let asked = hidden.asked(corners, None);
         if !pieces.past([&**corners], corners, &hidden.shadows) && asked.none() {
             return all;
         }

@@ -1,18 +1,19 @@
 //! Parts of footprints on the wall, and what the camera sees of them.
 
 use super::wall_point::{self, WallPoint};
-use crate::geometry::{Blockers, DVec3, Hidden, Pieces, Polygon, Ray, ShapeId, area_and_middle};
+use crate::geometry::{Blockers, DVec3, Hidden, Pieces, Polygon, Ray, Shape, area_and_middle};
 use crate::scene::Scene;
 
 /// A part of a footprint on the wall.
 pub(super) struct Patch {
     /// All of it, at its middle.
     pub whole: WallPoint,
-    /// Its corners, where the wall is flat.
+    /// Its corners, where the wall is flat; of a sphere those of the facet in the plane that touches
+    /// it in the middle, as the camera sees it: off by the square of the part's size.
     pub corners: Option<Polygon>,
     /// What the camera sees of it,
     pub seen: Vec<Polygon>,
-    /// and whether that is all; of a wall that is not flat whether it sees the middle.
+    /// and whether that is all; where there are no corners whether it sees the middle.
     pub open: bool,
 }
 
@@ -30,22 +31,21 @@ impl Patch {
         };
         let whole = at([0.5; 2]);
         let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(at);
-        let is_flat = |id: ShapeId| scene.surfaces[id as usize].shape.is_flat();
         let free = |to: DVec3, blockers: &Blockers| {
+            let to = wall_point::on_wall(scene, &whole, to);
             let ray = Ray::between(scene.camera.position, to);
             let ends = [None, whole.surface];
             ray.is_some_and(|ray| !scene.bvh().blocked_by(blockers, &ray, ends))
         };
-        if !whole.surface.is_some_and(is_flat) || rim.iter().any(|w| w.surface != whole.surface) {
+        let Some(corners) = facet(scene, &whole, &rim) else {
             return Self {
                 corners: None,
                 seen: Vec::new(),
                 open: free(whole.position, &Blockers::Any),
                 whole,
             };
-        }
-        let corners = rim.map(|w| w.position).to_vec();
-        let asked = hidden.asked(&corners);
+        };
+        let asked = hidden.asked(&corners, whole.surface);
         let mut pieces = Pieces::default();
         let open = !pieces.past([&*corners], &corners, &hidden.shadows) && asked.none();
         let mut seen: Vec<Polygon> = pieces.iter().map(<[DVec3]>::to_vec).collect();
@@ -60,6 +60,30 @@ impl Patch {
             open,
         }
     }
+}
+
+/// The corners of what is flat of a part of the wall, or nearly: of a sphere where the camera sees
+/// them in the touching plane, if that is near them for the part's size.
+fn facet(scene: &Scene, whole: &WallPoint, rim: &[WallPoint; 4]) -> Option<Polygon> {
+    /// Distance from a corner to the wall, of that to the middle.
+    const NEAR: f64 = 0.5;
+    let shape = &scene.surfaces[whole.surface? as usize].shape;
+    if rim.iter().any(|w| w.surface != whole.surface) {
+        return None;
+    }
+    if shape.is_flat() {
+        return Some(rim.map(|w| w.position).to_vec());
+    }
+    let Shape::Sphere(_) = shape else { return None };
+    let camera = scene.camera.position;
+    let height = whole.normal.dot(whole.position - camera);
+    let corner = |w: &WallPoint| {
+        let line = w.position - camera;
+        let corner = camera + line * (height / whole.normal.dot(line));
+        let off = (corner - w.position).length();
+        (off <= NEAR * (w.position - whole.position).length()).then_some(corner)
+    };
+    rim.iter().map(corner).collect()
 }
 
 /// A convex figure in triangles, each in four.
