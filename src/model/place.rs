@@ -52,7 +52,12 @@ pub(super) fn grid_of_disc(count: [usize; 2]) -> Vec<Place> {
         let whole = CORNERS.map(|[a, b]| [from[0] + a * size[0], from[1] + b * size[1]]);
         let mut figures = vec![whole.to_vec()];
         for sign in [1.0, -1.0] {
-            let halves = figures.iter().flat_map(|f| halved(f, sign));
+            // Rounding of a corner on the diagonal.
+            let height = |[u, v]: [f64; 2]| match (u - 0.5) - sign * (v - 0.5) {
+                h if h.abs() < 1e-14 => 0.0,
+                h => h,
+            };
+            let halves = figures.iter().flat_map(|f| halved(f, height));
             figures = halves.filter(|f| f.len() > 2).collect();
         }
         match figures.len() {
@@ -64,16 +69,11 @@ pub(super) fn grid_of_disc(count: [usize; 2]) -> Vec<Place> {
 }
 
 /// Corners of the unit square.
-const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+pub(super) const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-/// Both parts of a convex figure in the unit square beside the diagonal (u − ½) = ±(v − ½).
-fn halved(figure: &[[f64; 2]], sign: f64) -> [Vec<[f64; 2]>; 2] {
-    // Rounding of a corner on the diagonal.
-    const ON_IT: f64 = 1e-14;
-    let height = |[u, v]: [f64; 2]| match (u - 0.5) - sign * (v - 0.5) {
-        h if h.abs() < ON_IT => 0.0,
-        h => h,
-    };
+/// Both parts of a convex figure, where a height that is linear over it is not below and not above
+/// 0.
+pub(super) fn halved(figure: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> [Vec<[f64; 2]>; 2] {
     let mut parts = [Vec::new(), Vec::new()];
     for (k, p) in figure.iter().enumerate() {
         let q = figure[(k + 1) % figure.len()];
