@@ -3,7 +3,7 @@
 use super::{
     Ball, FAR, MOST_FOOTPRINT_CUTS, MOST_FOOTPRINT_PARTS, folded, nodes_a_side, plane_nodes,
 };
-use crate::geometry::{DVec3, Parallelogram, Shape};
+use crate::geometry::{DVec3, Shape};
 use crate::model::place::{CORNERS, area_of, halved, within};
 use crate::scene::{Scene, Surface};
 
@@ -17,8 +17,9 @@ pub(in crate::model) struct FootprintPart {
     pub side: f64,
     pub ball: Ball,
     distance: f64,
-    /// Where a wall's edge crosses it, triangles of its unit square in each of which the camera
-    /// sees one wall, or none: across a step the integrand jumps. None where it is whole.
+    /// Where [`edges`] cross it, triangles of its unit square in each of which the camera sees one
+    /// wall, or none, and the front of a flat hidden surface, or its back: the integrand is smooth.
+    /// None where it is whole.
     triangles: Vec<[[f64; 2]; 3]>,
 }
 
@@ -101,33 +102,38 @@ pub(in crate::model) fn footprint_parts(scene: &Scene, pixel: usize) -> Vec<Foot
     done
 }
 
-/// Normals of planes through the camera along which what it sees may jump from one flat wall to
-/// another: through each edge of each, and through the line in which two planes meet, n_i·w = d_i:
-/// n_i (d_j − n_j·o) − n_j (d_i − n_i·o), o the camera.
+/// Normals of planes through the camera along which the light of what it sees of flat walls may jump
+/// or bend: through each edge of each, where what it sees jumps, and through the line in which the
+/// planes of two walls, or of a wall and a flat hidden surface, meet, n·w = d and m·w = e: n (e −
+/// m·o) − m (d − n·o), o the camera. Beyond the latter a hidden surface shows its back.
 fn edges(scene: &Scene) -> Vec<DVec3> {
     let camera = scene.camera.position;
-    let flat: Vec<&Parallelogram> = scene
-        .relays()
-        .filter_map(|(_, wall)| match &wall.shape {
-            Shape::Parallelogram(p) => Some(p),
-            _ => None,
-        })
-        .collect();
-    let own = flat.iter().flat_map(|wall| {
-        let corners = wall.corners().map(|c| c - camera);
-        (0..4).map(move |k| corners[k].cross(corners[(k + 1) % 4]))
-    });
-    let shared = (0..flat.len()).flat_map(|i| {
-        let flat = &flat;
-        (0..i).filter_map(move |j| {
-            let [n, m] = [i, j].map(|k| flat[k].normal());
-            let [d, e] = [i, j].map(|k| flat[k].normal().dot(flat[k].corner() - camera));
-            let normal = n * e - m * d;
-            // Walls in one plane meet nowhere.
-            (normal.length() > ON_EDGE * (d.abs() + e.abs())).then_some(normal)
-        })
-    });
-    own.chain(shared).collect()
+    let plane = |(_, surface): (usize, &Surface)| match &surface.shape {
+        Shape::Parallelogram(p) => Some((p.normal(), p.normal().dot(p.corner() - camera))),
+        Shape::Disc(d) => Some((d.normal(), d.normal().dot(d.centre() - camera))),
+        _ => None,
+    };
+    let walls: Vec<(DVec3, f64)> = scene.relays().filter_map(plane).collect();
+    let hidden: Vec<(DVec3, f64)> = scene.hidden().filter_map(plane).collect();
+    let sides = |(_, wall): (usize, &Surface)| {
+        let Shape::Parallelogram(p) = &wall.shape else {
+            return Vec::new();
+        };
+        let corners = p.corners().map(|c| c - camera);
+        let side = |k: usize| corners[k].cross(corners[(k + 1) % 4]);
+        (0..4).map(side).collect()
+    };
+    let mut found: Vec<DVec3> = scene.relays().flat_map(sides).collect();
+    for (i, (n, d)) in walls.iter().enumerate() {
+        for (m, e) in walls[..i].iter().chain(&hidden) {
+            let normal = *n * *e - *m * *d;
+            // Parallel planes meet nowhere.
+            if normal.length() > ON_EDGE * (d.abs() + e.abs()) {
+                found.push(normal);
+            }
+        }
+    }
+    found
 }
 
 /// [`FootprintPart::triangles`]: its square in convex figures between the edges that cross it, of
