@@ -203,29 +203,38 @@ impl<'a> Obstructed<'a> {
 
     /// What arrives of spot `spot` on each of the cells: d_l times the cell's area/π.
     pub(super) fn laser(&self, spot: usize, cells: &[HiddenCell]) -> Vec<Both> {
+        let each = self.laser_and_viewpoints(spot, cells).into_iter();
+        each.map(|[all, left, _]| [all, left]).collect()
+    }
+
+    /// The same, and what arrived if each lit point saw all of a cell or nothing, as it sees its
+    /// viewpoint.
+    pub(super) fn laser_and_viewpoints(&self, spot: usize, cells: &[HiddenCell]) -> Vec<[f64; 3]> {
         if self.scene.laser.is_shining() {
             let shines = |c: &HiddenCell| exitance(self.scene, spot, c.point.position);
-            let light = |c: &HiddenCell| [shines(c).unwrap_or(0.0) * c.area; 2];
+            let light = |c: &HiddenCell| [shines(c).unwrap_or(0.0) * c.area; 3];
             return cells.iter().map(light).collect();
         }
-        let mut found = vec![[0.0; 2]; cells.len()];
+        let mut found = vec![[0.0; 3]; cells.len()];
         let mut pieces = Pieces::default();
         for (wall, free) in &self.lit[spot] {
             let hidden = self
                 .opaque
                 .from(wall.position, wall.surface, self.scene.bvh());
-            for (both, cell) in found.iter_mut().zip(cells) {
+            for (sums, cell) in found.iter_mut().zip(cells) {
                 let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
-                both[0] += all;
+                sums[0] += all;
                 if *free && all != 0.0 {
-                    both[1] += self.lit_past(wall, &hidden, cell, all, &mut pieces);
+                    let [left, at_viewpoint] = self.lit_past(wall, &hidden, cell, all, &mut pieces);
+                    sums[1] += left;
+                    sums[2] += at_viewpoint;
                 }
             }
         }
         found
     }
 
-    /// What of `all` arrives on a cell past everything.
+    /// What of `all` arrives on a cell past everything, and what did if its viewpoint stood for it.
     fn lit_past(
         &self,
         wall: &WallPoint,
@@ -233,17 +242,19 @@ impl<'a> Obstructed<'a> {
         cell: &HiddenCell,
         all: f64,
         pieces: &mut Pieces,
-    ) -> f64 {
-        let Some(id) = wall.surface else { return 0.0 };
+    ) -> [f64; 2] {
+        let Some(id) = wall.surface else {
+            return [0.0; 2];
+        };
         let is_free =
             |to, blockers: &Blockers| self.is_free(wall.position, (cell.surface, to), id, blockers);
         let Some(corners) = &cell.corners else {
             let free = is_free(cell.point.position, &Blockers::Any);
-            return if free { all } else { 0.0 };
+            return if free { [all; 2] } else { [0.0; 2] };
         };
         let asked = hidden.asked(corners, None);
         if !pieces.past([&**corners], corners, &hidden.shadows) && asked.none() {
-            return all;
+            return [all; 2];
         }
         let (whole, _) = area_and_middle(corners);
         let light = |(area, middle): (f64, DVec3)| {
@@ -255,7 +266,15 @@ impl<'a> Obstructed<'a> {
         };
         let free = |middle| is_free(middle, &asked);
         let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
-        pieces.iter().map(over).sum()
+        let left = pieces.iter().map(over).sum();
+        let mut shadows = hidden.shadows.iter();
+        let dark = shadows.any(|s| s.covers_box(cell.viewpoint, DVec3::ZERO));
+        let at_viewpoint = if dark || !free(cell.viewpoint) {
+            0.0
+        } else {
+            all
+        };
+        [left, at_viewpoint]
     }
 }
 

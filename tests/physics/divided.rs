@@ -188,3 +188,53 @@ fn parted_at_4(width: f64, low: &str, board @ [corner, u, v]: [[f64; 3]; 3], hei
         }
     }
 }
+
+/// A pixel and a spot in one place see the same half of a board past a plate, so that the mean of
+/// what both see of a cell is not the product of their means: the model against a product rule over
+/// the half, and by few cells, where the product came close only like the size of a cell.
+#[test]
+fn pixel_and_spot_see_the_same_part_of_a_cell() {
+    let text = "name = \"same\"\nunit = \"in\"\nmax_bounces = 3\n\
+        [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [-20, 2, 10]\n\
+        [laser.spots]\nlayout = \"list\"\npoints = [[1.0, 2.0]]\n\
+        [camera]\nposition = [-20, 2, 10]\naperture_area = 0.05\npixels = [1, 1]\n\
+        view = { x = [0.99, 1.01], y = [1.99, 2.01] }\n\
+        [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = { lambertian = 0.8 }\n\
+        rectangle = { corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0] }\n\
+        [[surface]]\nname = \"board\"\nrole = \"hidden\"\nelements = [2, 2]\n\
+        rectangle = { corner = [0, 0, 6], u = [0, 4, 0], v = [4, 0, 0] }\n\
+        material = { lambertian = 0.7 }\n\
+        [[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
+        rectangle = { corner = [1.1666666666666667, -20, 3], u = [20, 0, 0], v = [0, 40, 0] }\n\
+        material = { lambertian = 0.0 }\n";
+    let found = by_quadrature(&Scene::from_toml("same", text).unwrap());
+    let (rule, pi) = (Rule::gauss_legendre(12), std::f64::consts::PI);
+    // From (x, y, 0) to the board's plane both cosines are 6/R.
+    let g = |[x, y]: [f64; 2], [a, b]: [f64; 2]| {
+        let r2 = (a - x) * (a - x) + (b - y) * (b - y) + 36.0;
+        36.0 / (r2 * r2)
+    };
+    let mut sum = 0.0;
+    for (y, wy) in rule.on(1.99, 2.01) {
+        for (from, to) in [(0.99, 1.0), (1.0, 1.01)] {
+            for (x, wx) in rule.on(from, to) {
+                let d2: f64 = (x + 20.0) * (x + 20.0) + (y - 2.0) * (y - 2.0) + 100.0;
+                let share = 0.05 * 100.0 / (d2 * d2) * wx * wy;
+                // The plate's edge lies half way up.
+                let end = 7.0 / 3.0 - x.max(1.0);
+                for (a, wa) in rule.on(0.0, end) {
+                    for (b, wb) in rule.on(0.0, 4.0) {
+                        sum += share * wa * wb * g([x, y], [a, b]) * g([1.0, 2.0], [a, b]);
+                    }
+                }
+            }
+        }
+    }
+    let truth = 0.005 * sum * (0.8 / pi) * (0.8 / pi) * (0.7 / pi);
+    let (phi, bound) = (found.phi[0], found.bound[0]);
+    let error = (phi - truth).abs();
+    assert!(error < 1e-3 * truth, "{phi:e} for {truth:e}");
+    assert!(error <= bound, "{error:e} beyond {bound:e}");
+    let points = found.visible.unwrap().points;
+    assert!(points <= 1 << 16, "{points} cells");
+}
