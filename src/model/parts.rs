@@ -34,7 +34,7 @@ pub(super) const MOST_CONNECTIONS: f64 = 2e8;
 pub(super) const MOST_APART: f64 = 4e9;
 
 /// Nodes a side of a part that is [`FAR`] by level of refinement, and the last level.
-const NODES: [f64; 8] = [2.0, 4.0, 7.0, 10.0, 14.0, 19.0, 26.0, 34.0];
+pub(super) const NODES: [f64; 8] = [2.0, 4.0, 7.0, 10.0, 14.0, 19.0, 26.0, 34.0];
 pub(super) const LAST_LEVEL: usize = NODES.len() - 1;
 
 /// Nodes a side at `level` of a part whose middle is `distance` of its radii away, so that parts
