@@ -122,9 +122,11 @@ impl Opaque {
 
 impl Hidden {
     /// The shapes that have to be asked, for segments that end on the convex hull of these points.
-    pub fn asked(&self, hull: &[DVec3]) -> Blockers {
+    /// They lie on shape `own`, flat or a sphere: seen from within neither hides any of itself.
+    pub fn asked(&self, hull: &[DVec3], own: Option<ShapeId>) -> Blockers {
         let near = |around: &Option<Shadow>| around.as_ref().is_none_or(|a| !a.misses(hull));
-        let asked = self.by_rays.iter().filter(|(_, around)| near(around));
+        let others = self.by_rays.iter().filter(|(id, _)| Some(*id) != own);
+        let asked = others.filter(|(_, around)| near(around));
         Blockers::Among(asked.map(|(id, _)| *id).collect())
     }
 }

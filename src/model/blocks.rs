@@ -109,7 +109,7 @@ impl Blocks {
                 let own = first + block.columns.start..first + block.columns.end;
                 own.for_each(|p| each(p, None));
             }
-        } else if !met.is_empty() || !block.open || !visit.hidden.asked(&block.hull).none() {
+        } else if !met.is_empty() || !block.open || !visit.hidden.asked(&block.hull, None).none() {
             match block.halves {
                 Some(halves) => {
                     for half in halves {

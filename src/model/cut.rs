@@ -115,7 +115,7 @@ impl<'a> Cut<'a> {
     /// Connections between wall points and hidden points at `level`.
     pub(super) fn connections(&self, level: Level) -> f64 {
         let seen = self.footprints.iter().flatten();
-        let seen: usize = seen.map(|part| part.nodes(level.walls).count()).sum();
+        let seen: usize = seen.map(|part| part.nodes(level.walls).len()).sum();
         let lit = self.spots * profile_nodes(self.profile, 2 + 2 * level.walls).len();
         self.hidden.count(level.hidden) as f64 * (seen + lit) as f64
     }

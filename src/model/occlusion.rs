@@ -7,7 +7,7 @@
 //!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
-//! centroid. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
+//! centroid. A sphere is taken for facets that touch it, which shrink with the parts. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
 //! and large meshes are asked ray by ray. How finely footprints and spots are divided for this is
 //! up to [`super::divided`].
 
@@ -100,7 +100,9 @@ impl<'a> Obstructed<'a> {
     /// Whether wall and obstacles are flat, so that shadows can be followed as they move.
     pub(super) fn is_flat(&self) -> bool {
         let mut patches = self.pixels.iter().flatten();
-        self.opaque.is_flat() && patches.all(|p| p.corners.is_some())
+        let is_flat = |id: ShapeId| self.scene.surfaces[id as usize].shape.is_flat();
+        let flat = |p: &Patch| p.corners.is_some() && p.whole.surface.is_some_and(is_flat);
+        self.opaque.is_flat() && patches.all(flat)
     }
 
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
@@ -159,7 +161,7 @@ impl<'a> Obstructed<'a> {
             let open = patch.open && self.is_free(patch.whole.position, to, wall, &Blockers::Any);
             return if open { whole } else { 0.0 };
         };
-        let asked = hidden.asked(corners);
+        let asked = hidden.asked(corners, Some(wall));
         let seen = patch.seen.iter().map(Vec::as_slice);
         let shadows = met.iter().map(|s| &hidden.shadows[*s]);
         if !pieces.past(seen, corners, shadows) && patch.open && asked.none() {
@@ -167,12 +169,18 @@ impl<'a> Obstructed<'a> {
         }
         let light = |(area, middle): (f64, DVec3)| {
             if area > 0.0 {
-                towards(&wall_point::seen_piece(self.scene, wall, middle, area))
+                towards(&wall_point::seen_piece(
+                    self.scene,
+                    &patch.whole,
+                    middle,
+                    area,
+                ))
             } else {
                 0.0
             }
         };
-        let free = |middle| self.is_free(middle, to, wall, &asked);
+        let on_wall = |middle| wall_point::on_wall(self.scene, &patch.whole, middle);
+        let free = |middle| self.is_free(on_wall(middle), to, wall, &asked);
         let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
         pieces.iter().map(over).sum()
     }
@@ -195,29 +203,38 @@ impl<'a> Obstructed<'a> {
 
     /// What arrives of spot `spot` on each of the cells: d_l times the cell's area/π.
     pub(super) fn laser(&self, spot: usize, cells: &[HiddenCell]) -> Vec<Both> {
+        let each = self.laser_and_viewpoints(spot, cells).into_iter();
+        each.map(|[all, left, _]| [all, left]).collect()
+    }
+
+    /// The same, and what arrived if each lit point saw all of a cell or nothing, as it sees its
+    /// viewpoint.
+    pub(super) fn laser_and_viewpoints(&self, spot: usize, cells: &[HiddenCell]) -> Vec<[f64; 3]> {
         if self.scene.laser.is_shining() {
             let shines = |c: &HiddenCell| exitance(self.scene, spot, c.point.position);
-            let light = |c: &HiddenCell| [shines(c).unwrap_or(0.0) * c.area; 2];
+            let light = |c: &HiddenCell| [shines(c).unwrap_or(0.0) * c.area; 3];
             return cells.iter().map(light).collect();
         }
-        let mut found = vec![[0.0; 2]; cells.len()];
+        let mut found = vec![[0.0; 3]; cells.len()];
         let mut pieces = Pieces::default();
         for (wall, free) in &self.lit[spot] {
             let hidden = self
                 .opaque
                 .from(wall.position, wall.surface, self.scene.bvh());
-            for (both, cell) in found.iter_mut().zip(cells) {
+            for (sums, cell) in found.iter_mut().zip(cells) {
                 let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
-                both[0] += all;
+                sums[0] += all;
                 if *free && all != 0.0 {
-                    both[1] += self.lit_past(wall, &hidden, cell, all, &mut pieces);
+                    let [left, at_viewpoint] = self.lit_past(wall, &hidden, cell, all, &mut pieces);
+                    sums[1] += left;
+                    sums[2] += at_viewpoint;
                 }
             }
         }
         found
     }
 
-    /// What of `all` arrives on a cell past everything.
+    /// What of `all` arrives on a cell past everything, and what did if its viewpoint stood for it.
     fn lit_past(
         &self,
         wall: &WallPoint,
@@ -225,17 +242,19 @@ impl<'a> Obstructed<'a> {
         cell: &HiddenCell,
         all: f64,
         pieces: &mut Pieces,
-    ) -> f64 {
-        let Some(id) = wall.surface else { return 0.0 };
+    ) -> [f64; 2] {
+        let Some(id) = wall.surface else {
+            return [0.0; 2];
+        };
         let is_free =
             |to, blockers: &Blockers| self.is_free(wall.position, (cell.surface, to), id, blockers);
         let Some(corners) = &cell.corners else {
             let free = is_free(cell.point.position, &Blockers::Any);
-            return if free { all } else { 0.0 };
+            return if free { [all; 2] } else { [0.0; 2] };
         };
-        let asked = hidden.asked(corners);
+        let asked = hidden.asked(corners, None);
         if !pieces.past([&**corners], corners, &hidden.shadows) && asked.none() {
-            return all;
+            return [all; 2];
         }
         let (whole, _) = area_and_middle(corners);
         let light = |(area, middle): (f64, DVec3)| {
@@ -247,7 +266,15 @@ impl<'a> Obstructed<'a> {
         };
         let free = |middle| is_free(middle, &asked);
         let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
-        pieces.iter().map(over).sum()
+        let left = pieces.iter().map(over).sum();
+        let mut shadows = hidden.shadows.iter();
+        let dark = shadows.any(|s| s.covers_box(cell.viewpoint, DVec3::ZERO));
+        let at_viewpoint = if dark || !free(cell.viewpoint) {
+            0.0
+        } else {
+            all
+        };
+        [left, at_viewpoint]
     }
 }
 

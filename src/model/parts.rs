@@ -4,7 +4,8 @@
 //! product rule of n nodes a side on a part of radius r converges like ρ^(−2n), ρ = y + √(1 + y²),
 //! y the distance in units of r: parts that light or sight come closer to than their own diameter
 //! are cut in four until none is left, ever smaller towards the near end; and the farther a part
-//! is for its size, the fewer nodes it gets. Triangles are cut along the edges of their texture.
+//! is for its size, the fewer nodes it gets. Triangles are cut along the edges of their texture,
+//! discs where their parameters have a kink.
 
 mod footprint;
 
@@ -12,7 +13,7 @@ use std::borrow::Cow;
 
 use super::cells::HiddenCell;
 use super::kernel::HiddenPoint;
-use super::place::{Place, grid, on_triangle, triangles};
+use super::place::{Place, area_of, grid, grid_of_disc, on_triangle, triangles, within};
 use crate::geometry::{DVec3, Shape, ShapeId};
 use crate::num::quadrature::Rule;
 use crate::scene::{Division, Element, Scene, Surface};
@@ -33,7 +34,7 @@ pub(super) const MOST_CONNECTIONS: f64 = 2e8;
 pub(super) const MOST_APART: f64 = 4e9;
 
 /// Nodes a side of a part that is [`FAR`] by level of refinement, and the last level.
-const NODES: [f64; 8] = [2.0, 4.0, 7.0, 10.0, 14.0, 19.0, 26.0, 34.0];
+pub(super) const NODES: [f64; 8] = [2.0, 4.0, 7.0, 10.0, 14.0, 19.0, 26.0, 34.0];
 pub(super) const LAST_LEVEL: usize = NODES.len() - 1;
 
 /// Nodes a side at `level` of a part whose middle is `distance` of its radii away, so that parts
@@ -127,6 +128,10 @@ impl<'a> HiddenParts<'a> {
                 }
                 Shape::Instance(body) if !body.is_exact_patch() => {
                     whole.extend(triangles(body).into_iter().map(|place| (index, place)));
+                }
+                Shape::Disc(_) => {
+                    let cells = grid_of_disc(surface.albedo.smooth_cells());
+                    whole.extend(cells.into_iter().map(|place| (index, place)));
                 }
                 _ => {
                     let cells = grid(surface.albedo.smooth_cells());
@@ -225,6 +230,14 @@ impl<'a> HiddenParts<'a> {
                     }
                 }
                 (Place::Triangle { .. }, _) => {}
+                (Place::Wedge { corners }, shape) => {
+                    let whole = shape.area() * area_of(corners);
+                    for (weights, share) in folded(n, square) {
+                        let point = surface.element_at(within(corners, weights));
+                        let area = share * whole;
+                        add(surface, &Element { area, ..point });
+                    }
+                }
                 (Place::Cell { from, size }, shape) => {
                     let area = shape.area() * size[0] * size[1];
                     for ([a, b], w) in square {

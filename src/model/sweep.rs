@@ -162,10 +162,7 @@ impl<'a> Sweep<'a> {
         self.past.blocks.visit(&hidden, &mut |p, met| {
             let mut sum = [0.0; AT_ONCE];
             for (i, (patch, seen)) in self.past.pixels[p].iter().zip(&self.seen[p]).enumerate() {
-                let (Some(met), Some(wall)) = (met, patch.whole.surface) else {
-                    continue;
-                };
-                let Some(corners) = &patch.corners else {
+                let (Some(met), Some(corners)) = (met, &patch.corners) else {
                     continue;
                 };
                 let moved: Vec<Vec<Moving>>;
@@ -178,7 +175,7 @@ impl<'a> Sweep<'a> {
                 let met = met.iter().map(|s| &shadows[*s]);
                 if pieces.past(figures.iter().map(Vec::as_slice), corners, met) || !patch.open {
                     for piece in pieces.iter() {
-                        let rates = self.seen_rate((piece, &carried), wall, (cell, &moves));
+                        let rates = self.seen_rate((piece, &carried), &patch.whole, (cell, &moves));
                         add(&mut sum, &rates);
                     }
                 } else {
@@ -216,7 +213,7 @@ impl<'a> Sweep<'a> {
     fn seen_rate(
         &self,
         (piece, carried): (&[Moving], &Carried),
-        wall: ShapeId,
+        whole: &WallPoint,
         (cell, moves): (&HiddenCell, &[HiddenRate; AT_ONCE]),
     ) -> Rates {
         let scene = self.past.scene;
@@ -224,7 +221,7 @@ impl<'a> Sweep<'a> {
         if area == 0.0 {
             return [0.0; AT_ONCE];
         }
-        let point = wall_point::seen_piece(scene, wall, middle.at, area);
+        let point = wall_point::seen_piece(scene, whole, middle.at, area);
         self.of(|k| {
             let position = middle.rate[k] + carried[k];
             let rate = self.views[k].piece(&point, position, grown[k] / area);

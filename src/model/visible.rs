@@ -21,6 +21,8 @@ pub struct Visible {
     pub share: Matrix,
     /// How far off that may be: the larger of what the last halving of the cells changed and half
     /// of what the one before changed, and what another division of footprints and spots changes.
+    /// At least two standard deviations of what viewpoints leave to chance where camera and laser
+    /// both see a part of a cell.
     /// An estimate: edges of shadows make the integrand bend, and what is smaller than the last
     /// cells may be missed where it is asked ray by ray.
     pub bound: Matrix,
@@ -34,6 +36,8 @@ const TARGET: f64 = 3e-4;
 /// is at least so many times what the entries change on average (in 1e5 normal deviates one exceeds
 /// 4.4).
 const SCATTER: f64 = 4.5;
+/// Standard deviations of what viewpoints leave to chance in a bound.
+const DEVIATIONS: f64 = 2.0;
 /// Entries of each side that are held at once.
 const HELD: usize = 1 << 22;
 
@@ -71,15 +75,15 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
     let walls = divided::settled(
         by,
         |(past, _)| divided::can_be_finer(past, cells.len(), 1.0),
-        |(_, now), (_, next)| moved(&(share(next) - share(now)), now),
+        |(_, now), (_, next)| moved(&(next.share() - now.share()), now),
         TARGET,
     )?;
     let (occlusion, mut next) = walls.used;
-    let others = walls.other.map(|(_, phi)| [share(&next), share(&phi)]);
+    let others = walls.other.map(|(_, phi)| [next.share(), phi.share()]);
     let mut now = photographs(&occlusion, &coarse);
     let mut before: Option<Matrix> = None;
     loop {
-        let (mut share, old) = (share(&next), share(&now));
+        let (mut share, old) = (next.share(), now.share());
         let change = (&share - old).abs();
         let exhausted = 4.0 * (cells.len() * occlusion.walls) as f64 > occlusion.most_pairs();
         if let Some(before) = &before
@@ -94,6 +98,7 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
                 0.0 => 0.0,
                 bound => bound.max(least),
             });
+            bound = bound.zip_map(&next.deviation(), |bound, d| bound.max(DEVIATIONS * d));
             if let Some([used, other]) = &others {
                 bound += (other - used).abs();
                 if walls.is_settled {
@@ -123,7 +128,7 @@ fn finer(share: f64, used: f64, other: f64) -> f64 {
 }
 
 /// What shares change in Φ with what stands in the way, over all of it.
-fn moved(change: &Matrix, [all, left]: &[Matrix; 2]) -> f64 {
+fn moved(change: &Matrix, Photographs { all, left, .. }: &Photographs) -> f64 {
     change.component_mul(all).norm() / left.norm().max(f64::MIN_POSITIVE)
 }
 
@@ -133,31 +138,79 @@ fn scatter(change: &Matrix) -> f64 {
     change.norm() / (moved.max(1) as f64).sqrt()
 }
 
-/// Φ with occlusion over Φ without; 1 where there is none.
-fn share([all, left]: &[Matrix; 2]) -> Matrix {
-    left.zip_map(all, |left, all| if all > 0.0 { left / all } else { 1.0 })
+/// Φ without and with occlusion, and the variance of the latter by the choice of viewpoints.
+struct Photographs {
+    all: Matrix,
+    left: Matrix,
+    variance: Matrix,
 }
 
-/// Φ without and with occlusion.
-fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> [Matrix; 2] {
+impl Photographs {
+    /// Φ with occlusion over Φ without; 1 where there is none.
+    fn share(&self) -> Matrix {
+        let share = |left: f64, all: f64| if all > 0.0 { left / all } else { 1.0 };
+        self.left.zip_map(&self.all, share)
+    }
+
+    /// Standard deviation of that.
+    fn deviation(&self) -> Matrix {
+        let share = |v: f64, all: f64| if all > 0.0 { v.sqrt() / all } else { 0.0 };
+        self.variance.zip_map(&self.all, share)
+    }
+}
+
+/// Φ of cells. c is known at a cell's viewpoint x, d as the mean d̄ over the cell and as d′ at x.
+/// Where pixel and spot see different parts of a cell, c(x)·d̄ is not the mean of c·d: were one's
+/// part the other's dark, light would pass where none does, in every cell along the edge alike.
+/// Both c(x)·d̄ + (c_all − c(x))·(d̄ − d′) = c_all·d̄ − (c_all − c(x))·d′ and c(x)·d̄ − c(x)·(d̄ − d′)
+/// = c(x)·d′ have the right mean over x; of each entry the one that varies less, by the squares of
+/// what it adds: the first where the camera sees the parts that are lit, and then nothing is added.
+fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> Photographs {
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
-    let mut all = [0; 2].map(|_| Matrix::zeros(pixels, spots));
+    let zeros = || Matrix::zeros(pixels, spots);
+    let [mut all, mut left, mut variance] = [zeros(), zeros(), zeros()];
+    // Sums and squares of what each adds.
+    let mut added = [[zeros(), zeros()], [zeros(), zeros()]];
     for chunk in cells.chunks((HELD / (pixels + spots)).max(1)) {
         let camera: Vec<Vec<Both>> = chunk
             .par_iter()
             .map(|cell| occlusion.camera(cell))
             .collect();
-        let laser: Vec<Vec<Both>> = (0..spots)
+        let laser: Vec<Vec<[f64; 3]>> = (0..spots)
             .into_par_iter()
-            .map(|l| occlusion.laser(l, chunk))
+            .map(|l| occlusion.laser_and_viewpoints(l, chunk))
             .collect();
-        for (which, phi) in all.iter_mut().enumerate() {
-            let c = Matrix::from_fn(pixels, chunk.len(), |p, q| camera[q][p][which]);
-            let d = Matrix::from_fn(chunk.len(), spots, |q, l| {
-                laser[l][q][which] * chunk[q].albedo
-            });
-            phi.gemm(1.0, &c, &d, 1.0);
+        let c = |which: usize| Matrix::from_fn(pixels, chunk.len(), |p, q| camera[q][p][which]);
+        let d = |of: fn([f64; 3]) -> f64| {
+            Matrix::from_fn(chunk.len(), spots, |q, l| of(laser[l][q]) * chunk[q].albedo)
+        };
+        let (seen, free) = (c(0), c(1));
+        all.gemm(1.0, &seen, &d(|[all, ..]| all), 1.0);
+        left.gemm(1.0, &free, &d(|[_, left, _]| left), 1.0);
+        let apart = d(|[_, left, at_viewpoint]| left - at_viewpoint);
+        if apart.iter().all(|x| *x == 0.0) {
+            continue;
+        }
+        let squares = |m: &Matrix| m.map(|x| x * x);
+        for (side, [sum, square]) in [&free - &seen, free].iter().zip(&mut added) {
+            sum.gemm(-1.0, side, &apart, 1.0);
+            square.gemm(1.0, &squares(side), &squares(&apart), 1.0);
         }
     }
-    all
+    let [[by_hidden, hidden], [by_free, free]] = &added;
+    for k in 0..left.len() {
+        let lit = left[k] + by_hidden[k] >= 0.0;
+        let (more, own) = if lit && hidden[k] <= free[k] {
+            (by_hidden[k], hidden[k])
+        } else {
+            (by_free[k], free[k])
+        };
+        left[k] += more;
+        variance[k] = own;
+    }
+    Photographs {
+        all,
+        left,
+        variance,
+    }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
-use crate::geometry::{DVec3, Interaction, Intersection, Ray, ShapeId};
+use crate::geometry::{DVec3, Interaction, Intersection, Ray, Shape, ShapeId};
 use crate::scene::Scene;
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -125,17 +125,36 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     }
 }
 
-/// A piece of `area` of the wall `id` that the camera sees, at its middle: dE =
-/// A_lens·cosθ_cam·cosθ_wall/d² dA.
-pub(super) fn seen_piece(scene: &Scene, id: ShapeId, middle: DVec3, area: f64) -> WallPoint {
+/// A piece of `area` of the facet of the wall about `whole` that the camera sees, at its middle: dE
+/// = A_lens·cosθ_cam·cosθ_facet/d² dA.
+pub(super) fn seen_piece(scene: &Scene, whole: &WallPoint, middle: DVec3, area: f64) -> WallPoint {
     let camera = &scene.camera;
+    let Some(id) = whole.surface else {
+        return WallPoint::nowhere(middle, whole.normal);
+    };
     let line = middle - camera.position;
     let d2 = line.length_squared();
     let direction = line / d2.sqrt();
-    let point = scene.surfaces[id as usize].shape.at_position(middle);
-    let cosines = camera.view.normal().dot(direction) * point.normal.dot(direction);
+    let shape = &scene.surfaces[id as usize].shape;
+    let point = shape.at_position(on_wall(scene, whole, middle));
+    let cosines = camera.view.normal().dot(direction) * whole.normal.dot(direction);
     let etendue = camera.aperture_area * cosines.abs() / d2 * area;
     reflecting(scene, id as usize, &point, direction, etendue)
+}
+
+/// Where the camera sees the wall behind a point of the facet about `whole`: there where the wall
+/// is flat.
+pub(super) fn on_wall(scene: &Scene, whole: &WallPoint, at: DVec3) -> DVec3 {
+    let shape = whole.surface.map(|id| &scene.surfaces[id as usize].shape);
+    let Some(shape @ Shape::Sphere(_)) = shape else {
+        return at;
+    };
+    let camera = scene.camera.position;
+    let ray = Ray::new(camera, (at - camera).normalize_or_zero());
+    match shape.intersect(&ray, false) {
+        Some(met) => shape.at_intersection(&ray, met).position,
+        None => shape.at_position(at).position,
+    }
 }
 
 /// The wall where the beam that is aimed at `offset` from the target of spot `spot` meets it, lit

@@ -1,7 +1,9 @@
 //! What stands in the way, on the seam, or beside the wall.
 
+use phicam::geometry::DVec3;
 use phicam::lab::Errors;
 use phicam::model::{Extent, Kernel, converged};
+use phicam::num::quadrature::Rule;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
 use phicam::transport::Estimator::{Factored, Independent, Shared};
@@ -188,4 +190,102 @@ fn what_misses_the_wall_is_lost() {
         "{:e} modelled",
         model.phi.sum()
     );
+}
+
+/// A ball for a wall, and a blind that takes the camera's sight of parts of pixels whose middles
+/// are free: the model against iterated quadrature of its own, each row of a footprint up to the
+/// blind's edge, which is found by halving.
+#[test]
+fn a_curved_wall_is_seen_past_an_edge_by_parts() {
+    let text = "name = \"ball\"\nunit = \"in\"\nmax_bounces = 3\n\
+        [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [4, -20, 15]\n\
+        [laser.spots]\nlayout = \"list\"\npoints = [[1.5, 1.5], [7.5, 4.0]]\n\
+        [camera]\nposition = [-20, 10, 15]\naperture_area = 0.05\npixels = [4, 4]\n\
+        view = { x = [2.25, 5.5], y = [2.75, 6.0] }\n\
+        [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = { lambertian = 0.8 }\n\
+        sphere = { centre = [4, 4, -25], radius = 25, face = \"outside\" }\n\
+        [[surface]]\nname = \"card\"\nrole = \"hidden\"\nelements = [2, 2]\n\
+        rectangle = { corner = [3, 9, 2], u = [0.5, 0.5, -1], v = [1, -0.5, 0.25] }\n\
+        material = { lambertian = 0.7 }\n\
+        [[surface]]\nname = \"blind\"\nrole = \"occluder\"\nsides = \"two\"\n\
+        rectangle = { corner = [-9, -30, 8.5], u = [0, 60, 0], v = [0, 0, 60] }\n\
+        material = { lambertian = 0.0 }\n";
+    let scene = Scene::from_toml("ball", text).unwrap();
+    let found = converged(&scene, Kernel::Physical, Extent::FULL).unwrap();
+
+    let (centre, radius, pi) = (DVec3::new(4.0, 4.0, -25.0), 25.0, std::f64::consts::PI);
+    let camera = DVec3::new(-20.0, 10.0, 15.0);
+    let above = |x: f64, y: f64| {
+        let z: f64 = radius * radius - (x - 4.0) * (x - 4.0) - (y - 4.0) * (y - 4.0);
+        DVec3::new(x, y, z.sqrt() - 25.0)
+    };
+    let (u, v) = (DVec3::new(0.5, 0.5, -1.0), DVec3::new(1.0, -0.5, 0.25));
+    let facing = u.cross(v).normalize();
+    let g = |wall: DVec3, hidden: DVec3| {
+        let r = hidden - wall;
+        let cosines = r.dot((wall - centre) / radius).max(0.0) * (-r.dot(facing)).max(0.0);
+        cosines / r.length_squared().powi(2)
+    };
+    // What the camera sees is aimed at in the plane that touches the ball in the view's middle.
+    let middle = above(3.875, 4.375);
+    let n = (middle - centre) / radius;
+    let aim = |x: f64, y: f64| {
+        let z = middle.z - (n.x * (x - middle.x) + n.y * (y - middle.y)) / n.z;
+        DVec3::new(x, y, z) - camera
+    };
+    let is_free = |x: f64, y: f64| camera.z + 11.0 / (x + 20.0) * aim(x, y).z < 8.5;
+    let rule = Rule::gauss_legendre(8);
+    for p in 0..16 {
+        let [x0, y0] = [
+            2.25 + 0.8125 * (p % 4) as f64,
+            2.75 + 0.8125 * (p / 4) as f64,
+        ];
+        let mut seen = Vec::new();
+        for (y, wy) in rule.on(y0, y0 + 0.8125) {
+            let (mut low, mut high) = (x0, x0 + 0.8125);
+            if is_free(high, y) {
+                low = high;
+            }
+            for _ in 0..50 {
+                let half = 0.5 * (low + high);
+                if is_free(half, y) {
+                    low = half;
+                } else {
+                    high = half;
+                }
+            }
+            for (x, wx) in rule.on(x0, low) {
+                let line = aim(x, y);
+                let d2 = line.length_squared();
+                let share = 0.05 * line.dot(n).powi(2) / (d2 * d2) * wx * wy / n.z;
+                let from = camera - centre;
+                let b = line.dot(from) / d2;
+                let t = -b - (b * b - (from.length_squared() - radius * radius) / d2).sqrt();
+                seen.push((camera + line * t, share));
+            }
+        }
+        for (l, spot) in [above(1.5, 1.5), above(7.5, 4.0)].into_iter().enumerate() {
+            let mut sum = 0.0;
+            for (a, wa) in rule.on(0.0, 1.0) {
+                for (b, wb) in rule.on(0.0, 1.0) {
+                    let at = DVec3::new(3.0, 9.0, 2.0) + u * a + v * b;
+                    let to: f64 = seen.iter().map(|(wall, share)| share * g(*wall, at)).sum();
+                    sum += wa * wb * u.cross(v).length() * g(spot, at) * to;
+                }
+            }
+            let truth = 0.005 * sum * (0.8 / pi) * (0.8 / pi) * (0.7 / pi);
+            let (phi, bound) = (found.phi[(p, l)], found.bound[(p, l)]);
+            let error = (phi - truth).abs();
+            assert!(error < 1e-3 * truth, "{p}, {l}: {phi:e} for {truth:e}");
+            assert!(
+                error <= bound + 1e-6 * truth,
+                "{p}, {l}: {error:e} beyond {bound:e}"
+            );
+        }
+    }
+    // Parts of the last column are hidden, and no pixel's middle is.
+    assert!((0..4).all(|k| {
+        let y = 3.15625 + 0.8125 * k as f64;
+        is_free(5.09375, y) && !is_free(5.5, y)
+    }));
 }
