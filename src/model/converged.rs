@@ -15,10 +15,10 @@ use crate::scene::Scene;
 pub struct Converged {
     /// Pixels × spots, W.
     pub phi: Matrix,
-    /// How far each entry may be off, W: what the last refinement changed in it, e, times
-    /// r/(1 − r) where that is more, r ≤ 0.9 the last change over the one before, or what such an r
-    /// leaves of an error that falls like a power of the nodes. It covers what is left of a
-    /// geometric sequence and of a power, and some ten times the last change at most. Where hidden surfaces
+    /// How far each entry may be off, W: what the last refinement changed in it, e, times r/(1 − r)
+    /// where that is more, r ≤ 0.9 the last change over the one before, or what such an r leaves of
+    /// an error that falls like a power of the nodes. It covers what is left of a geometric
+    /// sequence and of a power, and some ten times the last change at most. Where hidden surfaces
     /// and walls were refined apart the sum of both, and what mixes them.
     pub bound: Matrix,
     /// Relative Frobenius norm of the last change.

@@ -7,9 +7,10 @@
 //!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
-//! centroid. A sphere is taken for facets that touch it, which shrink with the parts. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
-//! and large meshes are asked ray by ray. How finely footprints and spots are divided for this is
-//! up to [`super::divided`].
+//! centroid. A sphere is taken for facets that touch it, which shrink with the parts. So is what a
+//! lit point sees of a flat cell of the hidden surface. Other walls, cells and large meshes are
+//! asked ray by ray. How finely footprints and spots are divided for this is up to
+//! [`super::divided`].
 
 use super::blocks::Blocks;
 use super::cells::HiddenCell;

@@ -11,8 +11,8 @@ const HALVINGS: u32 = 3;
 pub(super) struct Patch {
     /// All of it, at its middle.
     pub whole: WallPoint,
-    /// Its corners, where the wall is flat; of a sphere those of the facet in the plane that touches
-    /// it in the middle, as the camera sees it: off by the square of the part's size.
+    /// Its corners, where the wall is flat; of a sphere those of the facet in the plane that
+    /// touches it in the middle, as the camera sees it: off by the square of the part's size.
     pub corners: Option<Polygon>,
     /// What the camera sees of it,
     pub seen: Vec<Polygon>,
@@ -68,8 +68,8 @@ impl Patch {
     }
 }
 
-/// The parts of a triangle whose middles are in free sight, cut in four as long as that is not so of
-/// all its corners alike: the camera looks once, and what is seen serves all cells.
+/// The parts of a triangle whose middles are in free sight, cut in four as long as that is not so
+/// of all its corners alike: the camera looks once, and what is seen serves all cells.
 fn in_sight(triangle: Polygon, halvings: u32, is_free: &impl Fn(DVec3) -> bool) -> Vec<Polygon> {
     let open = is_free(area_and_middle(&triangle).1);
     if halvings == 0 || triangle.iter().all(|corner| is_free(*corner) == open) {

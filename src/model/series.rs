@@ -57,10 +57,10 @@ impl Series {
     }
 }
 
-/// What the changes of an entry, the last and the one before, leave to come by rules of such numbers
-/// of nodes: of changes that fall like r, r/(1 − r) times the last; of an error like n^−p, as a kink
-/// leaves it, 1/((n₂/n₁)^p − 1) times, which is more, for rules grow by less and less. It has r =
-/// (n₁^−p − n₂^−p)/(n₀^−p − n₁^−p), which falls with p.
+/// What the changes of an entry, the last and the one before, leave to come by rules of such
+/// numbers of nodes: of changes that fall like r, r/(1 − r) times the last; of an error like n^−p,
+/// as a kink leaves it, 1/((n₂/n₁)^p − 1) times, which is more, for rules grow by less and less. It
+/// has r = (n₁^−p − n₂^−p)/(n₀^−p − n₁^−p), which falls with p.
 fn remainder(last: f64, before: f64, [n0, n1, n2]: [f64; 3]) -> f64 {
     let ratio = if before > 0.0 {
         (last / before).min(0.9)

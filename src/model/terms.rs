@@ -62,8 +62,8 @@ impl Terms {
         summed(&self.element, elements, (&self.camera, &self.laser, spot))
     }
 
-    /// Σ_l w_pl of what frame l shows of each element at albedo 1: pixels × elements by the weights'
-    /// pixels × spots.
+    /// Σ_l w_pl of what frame l shows of each element at albedo 1: pixels × elements by the
+    /// weights' pixels × spots.
     pub fn mean(&self, weights: &Matrix, elements: usize) -> Matrix {
         let lit = weights * self.laser.transpose();
         let mut all = Matrix::zeros(self.camera.nrows(), elements);

@@ -162,9 +162,10 @@ impl Photographs {
 /// Φ of cells. c is known at a cell's viewpoint x, d as the mean d̄ over the cell and as d′ at x.
 /// Where pixel and spot see different parts of a cell, c(x)·d̄ is not the mean of c·d: were one's
 /// part the other's dark, light would pass where none does, in every cell along the edge alike.
-/// Both c(x)·d̄ + (c_all − c(x))·(d̄ − d′) = c_all·d̄ − (c_all − c(x))·d′ and c(x)·d̄ − c(x)·(d̄ − d′)
-/// = c(x)·d′ have the right mean over x; of each entry the one that varies less, by the squares of
-/// what it adds: the first where the camera sees the parts that are lit, and then nothing is added.
+/// Both c(x)·d̄ + (c_all − c(x))·(d̄ − d′) = c_all·d̄ − (c_all − c(x))·d′ and c(x)·d̄ − c(x)·(d̄ −
+/// d′) = c(x)·d′ have the right mean over x; of each entry the one that varies less, by the squares
+/// of what it adds: the first where the camera sees the parts that are lit, and then nothing is
+/// added.
 fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> Photographs {
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
     let zeros = || Matrix::zeros(pixels, spots);

@@ -262,8 +262,9 @@ fn around(centre: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The integers z [`around`] a centre c with exp −½T²((z − c)² − (z₀ − c)²), z₀ the nearest, down to
-/// e to −[`NEGLIGIBLE`]: with k = |z − z₀| and f = |z₀ − c| it is bᵏ·ᵏ·a^±ᵏ, b = e^−½T², a = e^(T² f).
+/// The integers z [`around`] a centre c with exp −½T²((z − c)² − (z₀ − c)²), z₀ the nearest, down
+/// to e to −[`NEGLIGIBLE`]: with k = |z − z₀| and f = |z₀ − c| it is bᵏ·ᵏ·a^±ᵏ, b = e^−½T², a =
+/// e^(T² f).
 fn weigh(choices: &mut Vec<(f64, f64)>, square: f64, centre: f64) {
     let (half, f) = (-0.5 * square, (centre - centre.round()).abs());
     choices.clear();

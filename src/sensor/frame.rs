@@ -73,8 +73,8 @@ impl Figures {
         reach <= self.full_well && reach / self.gain + self.offset < self.top() - 0.5
     }
 
-    /// Whether frames with `mean` electrons stay above 0 counts, noise included: electrons are never
-    /// fewer than none.
+    /// Whether frames with `mean` electrons stay above 0 counts, noise included: electrons are
+    /// never fewer than none.
     pub(super) fn clears(&self, mean: f64) -> bool {
         let shot = self.variance(mean) - self.read_noise * self.read_noise;
         let least = (mean - MARGIN * shot.sqrt()).max(0.0) - MARGIN * self.read_noise;

@@ -141,8 +141,8 @@ impl Command {
     pub(in crate::cli) const SCHEDULED: [&str; 6] =
         ["plan", "shard", "status", "merge", "slurm", "clean"];
 
-    /// Whether it takes another value of a key of the scene: where it reads a scene that is named in
-    /// its arguments, and `expose` for its sensor, which is no part of a render.
+    /// Whether it takes another value of a key of the scene: where it reads a scene that is named
+    /// in its arguments, and `expose` for its sensor, which is no part of a render.
     pub(in crate::cli) fn defines(&self, key: &str) -> bool {
         match self {
             Self::Expose(_) => key.starts_with("sensor."),

@@ -78,7 +78,8 @@ pub struct Located {
     pub middle: [f64; 3],
     /// Sizes tried, growing.
     pub curve: Vec<Likelihood>,
-    /// ln p(Φ) of the likeliest size tried, up to what is the same in every order of the photographs.
+    /// ln p(Φ) of the likeliest size tried, up to what is the same in every order of the
+    /// photographs.
     pub log_likelihood: f64,
     /// Standard deviation of what is not explained, in units of the stated errors (of Φcam's, W,
     /// where none are stated).

@@ -102,10 +102,10 @@ pub(in crate::model) fn footprint_parts(scene: &Scene, pixel: usize) -> Vec<Foot
     done
 }
 
-/// Normals of planes through the camera along which the light of what it sees of flat walls may jump
-/// or bend: through each edge of each, where what it sees jumps, and through the line in which the
-/// planes of two walls, or of a wall and a flat hidden surface, meet, n·w = d and m·w = e: n (e −
-/// m·o) − m (d − n·o), o the camera. Beyond the latter a hidden surface shows its back.
+/// Normals of planes through the camera along which the light of what it sees of flat walls may
+/// jump or bend: through each edge of each, where what it sees jumps, and through the line in which
+/// the planes of two walls, or of a wall and a flat hidden surface, meet, n·w = d and m·w = e: n (e
+/// − m·o) − m (d − n·o), o the camera. Beyond the latter a hidden surface shows its back.
 fn edges(scene: &Scene) -> Vec<DVec3> {
     let camera = scene.camera.position;
     let plane = |(_, surface): (usize, &Surface)| match &surface.shape {

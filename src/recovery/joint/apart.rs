@@ -1,7 +1,7 @@
 //! Single elements that are of neither level.
 //!
-//! The others keep their levels exactly, or to within the spread that all have; the one differs by a
-//! normal deviate of [`TAU`].
+//! The others keep their levels exactly, or to within the spread that all have; the one differs by
+//! a normal deviate of [`TAU`].
 
 use nalgebra::DVector;
 use rayon::prelude::*;

@@ -6,8 +6,8 @@
 //!
 //! Beforehand patterns are as likely as where the levels are exact, and that these are so as all
 //! else together. One half of that is a spread τ of all elements, each τ up to the largest of
-//! [`SPREADS`] as likely (Gelman 2006), of which one of these stands for those that are nearer to it
-//! than to others by their ratio. The other half are single elements that are of neither level,
+//! [`SPREADS`] as likely (Gelman 2006), of which one of these stands for those that are nearer to
+//! it than to others by their ratio. The other half are single elements that are of neither level,
 //! each as likely ([`super::apart`]), the others exact, or as likely of the likeliest spread.
 
 use nalgebra::DVector;
@@ -24,8 +24,8 @@ use crate::recovery::RecoveryError;
 /// Spreads τ that are tried, from hardly any to no levels at all.
 const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
 
-/// How likely it is beforehand that levels are exact, that all elements differ from theirs, and that
-/// one does.
+/// How likely it is beforehand that levels are exact, that all elements differ from theirs, and
+/// that one does.
 const EXACT: f64 = 0.5;
 const SPREAD: f64 = 0.25;
 const APART: f64 = 0.25;

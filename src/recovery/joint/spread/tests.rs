@@ -26,9 +26,9 @@ fn if_alike() -> [f64; 16] {
     all
 }
 
-/// ln of Σ P(s) 2 ∫∫ N(d; R ℓ, 1 + R S Rᵀ) da db over all patterns s, but for (2π)⁻², S the variances
-/// of elements about their levels; and E (x − shown)², by Gauss–Legendre on 60 × 60 levels and
-/// inverses of whole matrices.
+/// ln of Σ P(s) 2 ∫∫ N(d; R ℓ, 1 + R S Rᵀ) da db over all patterns s, but for (2π)⁻², S the
+/// variances of elements about their levels; and E (x − shown)², by Gauss–Legendre on 60 × 60
+/// levels and inverses of whole matrices.
 fn by_hand(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
