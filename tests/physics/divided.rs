@@ -118,23 +118,27 @@ fn a_step_in_the_wall_parts_what_is_seen() {
     let low = "[[surface]]\nname = \"low\"\nrole = \"relay\"\nmaterial = { lambertian = 0.8 }\n\
         rectangle = { corner = [4, -30, -0.5], u = [30, 0, 0], v = [0, 60, 0] }\n";
     let board = [[3.0, 11.0, 4.0], [4.0, 0.0, 0.0], [0.0, -3.0, 3.0]];
-    parted_at_4(34.0, low, board, -0.5);
+    parted_at_4((34.0, low, -0.5), board, [[1.0, 1.5], [-2.0, 3.0]]);
 }
 
-/// A board in the plane x = 4, which sends light to what lies before it alone.
+/// A board in the plane x = 4, which sends light to what lies beyond it alone.
 #[test]
 fn the_plane_of_a_board_parts_what_is_seen() {
-    let board = [[4.0, 7.0, 2.0], [0.0, 0.0, 2.0], [0.0, 2.0, 0.0]];
-    parted_at_4(60.0, "", board, 0.0);
+    let board = [[4.0, 7.0, 2.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+    parted_at_4((60.0, "", 0.0), board, [[7.0, 1.5], [9.0, 3.0]]);
 }
 
 /// The model, by parts that see one wall and one side of the board, against product rules on both
 /// sides of x = 4 in the view, where the wall lies at z = 0 and beyond at `height`.
-fn parted_at_4(width: f64, low: &str, board @ [corner, u, v]: [[f64; 3]; 3], height: f64) {
+fn parted_at_4(
+    (width, low, height): (f64, &str, f64),
+    board @ [corner, u, v]: [[f64; 3]; 3],
+    spots: [[f64; 2]; 2],
+) {
     let text = format!(
         "name = \"parted\"\nunit = \"in\"\nmax_bounces = 3\n\
         [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [-20, 10, 15]\n\
-        [laser.spots]\nlayout = \"list\"\npoints = [[1.0, 1.5], [-2.0, 3.0]]\n\
+        [laser.spots]\nlayout = \"list\"\npoints = {spots:?}\n\
         [camera]\nposition = [-20, 10, 15]\naperture_area = 0.05\npixels = [4, 4]\n\
         view = {{ x = [2.25, 5.5], y = [2.75, 6.0] }}\n\
         [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
@@ -167,7 +171,7 @@ fn parted_at_4(width: f64, low: &str, board @ [corner, u, v]: [[f64; 3]; 3], hei
                 }
             }
         }
-        for (l, spot) in [[1.0, 1.5], [-2.0, 3.0]].into_iter().enumerate() {
+        for (l, spot) in spots.into_iter().enumerate() {
             let mut sum = 0.0;
             for (a, wa) in rule.on(0.0, 1.0) {
                 for (b, wb) in rule.on(0.0, 1.0) {

@@ -9,6 +9,8 @@
 //! [`SPREADS`] as likely (Gelman 2006), of which one of these stands for those that are nearer to
 //! it than to others by their ratio. The other half are single elements that are of neither level,
 //! each as likely ([`super::apart`]), the others exact, or as likely of the likeliest spread.
+//! Errors are the larger of those with single elements and without: a simpler account of elements
+//! that all differ, which one of them is, has less.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -29,6 +31,8 @@ const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
 const EXACT: f64 = 0.5;
 const SPREAD: f64 = 0.25;
 const APART: f64 = 0.25;
+/// The second beside the first where no single element does.
+const SPREADS_ALONE: f64 = (1.0 - EXACT) / SPREAD;
 
 /// How likely each of [`SPREADS`] is beforehand, together 1.
 pub(super) fn beforehand() -> [f64; SPREADS.len()] {
@@ -92,6 +96,7 @@ pub(super) fn sum(
         }
         parts.push((SPREAD * before, part));
     }
+    let count = parts.len();
     let (_, tau, before) = likeliest;
     let single: Vec<(usize, f64, f64)> = apart::elements(likelihood, light)
         .into_iter()
@@ -122,12 +127,21 @@ pub(super) fn sum(
             .moments
             .scaled(own / all / exact.patterns.moments.weight),
     ];
-    let mut square = exact.patterns.moments.square_about(shown) * (own / all);
     for ((_, part), weight) in parts.iter().zip(&weights) {
         let of = &part.summed.patterns.moments;
         sums.push(of.scaled(weight / all / of.weight));
-        square += &part.square * (weight / all);
     }
+    // With spreads of all elements alone, and with single elements too.
+    let exactly = exact.patterns.moments.square_about(shown) * own;
+    let spreads = own + SPREADS_ALONE * weights[..count].iter().sum::<f64>();
+    let square = |factor: f64, count: usize| {
+        let each = parts[..count].iter().zip(&weights);
+        each.fold(exactly.clone(), |sum, ((_, part), weight)| {
+            sum + &part.square * (factor * weight)
+        })
+    };
+    let alone = square(SPREADS_ALONE, count) / spreads;
+    let square = (square(1.0, parts.len()) / all).sup(&alone);
     Ok(Spread {
         moments: Moments::together(&sums),
         exact: own / all,

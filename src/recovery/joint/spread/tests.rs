@@ -110,10 +110,17 @@ fn errors_are_those_of_all_patterns_levels_and_spreads() {
                 .map(|(before, (log, _))| before * libm::exp(log - own.0))
                 .collect();
             let all = 1.0 + others.iter().sum::<f64>();
-            let mut square = own.1 / all;
-            for ((_, (_, of)), weight) in parts.iter().zip(&others) {
-                square += of * (weight / all);
-            }
+            let sum = |factor: f64, count: usize| {
+                let each = parts[..count].iter().zip(&others);
+                let (mut all, mut square) = (1.0, own.1.clone());
+                each.for_each(|((_, (_, of)), weight)| {
+                    all += factor * weight;
+                    square += of * (factor * weight);
+                });
+                square / all
+            };
+            // The larger of those with and without single elements.
+            let square = sum(1.0, parts.len()).sup(&sum(2.0, SPREADS.len()));
             let told = format!("{truth:?} {noise}: {} {}", found.exact, all.recip());
             assert!((found.exact - all.recip()).abs() < 0.03, "{told}");
             for (own, expected) in found.error.iter().zip(square.iter()) {
