@@ -145,7 +145,6 @@ fn what_has_no_bands_says_why() {
     for (method, confidence) in [
         (Method::Joint, 0.95),
         (Method::JointUnbounded, 0.95),
-        (Method::JointTwoValued, 0.95),
         (Method::Pinv, 1.0),
         (Method::Pinv, f64::NAN),
     ] {
@@ -161,6 +160,17 @@ fn what_has_no_bands_says_why() {
             ),
             "{method} {error}"
         );
+    }
+    for method in [Method::JointTv, Method::JointTwoValued] {
+        let options = Options {
+            bands: Some(0.95),
+            total_variation: Some(0.1),
+            ..Options::default()
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+        let problem = problem.with_grids(&[[2, 2]]).unwrap();
+        let found = recover(method, &problem, &options).unwrap();
+        assert_eq!((found.bands, found.no_bands), (None, Some(ASSUMED)));
     }
 }
 
