@@ -35,9 +35,10 @@ pub(super) fn elements(likelihood: &PatternLikelihood<'_>, light: &[bool]) -> Ve
             Some(weighed.log - white.less())
         };
         let flipped = (0..n).filter_map(|k| {
-            let (sign, count) = match light[k] {
-                true => (-1.0, count - 1),
-                false => (1.0, count + 1),
+            let (sign, count) = if light[k] {
+                (-1.0, count - 1)
+            } else {
+                (1.0, count + 1)
             };
             weigh(&(&lit + own.r.column(k) * sign), count)
         });

@@ -35,9 +35,12 @@ fn compress(
     before: f64,
     name: &'static str,
 ) -> Result<(Svd, usize), RecoveryError> {
-    let none = || match before > 0.0 {
-        true => RecoveryError::TakenUp,
-        false => RecoveryError::RankZero { side: name },
+    let none = || {
+        if before > 0.0 {
+            RecoveryError::TakenUp
+        } else {
+            RecoveryError::RankZero { side: name }
+        }
     };
     if side.is_empty() {
         return Err(none());
