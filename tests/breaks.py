@@ -1564,6 +1564,42 @@ BREAKS = [
         "divided::pixel_and_spot_see_the_same_part_of_a_cell",
         9,
     ),
+    Break(
+        "Footprints are cut along edges of walls in sight, and by planes of boards",
+        "src/model/parts/footprint.rs",
+        "part.triangles = triangles(part, &edges, |at| footprint.at(at) - camera);",
+        "part.triangles = triangles(part, &[], |at| footprint.at(at) - camera);",
+        "physics",
+        "divided::a_step_in_the_wall_parts_what_is_seen",
+        10,
+    ),
+    Break(
+        "A ball as a wall is seen past an edge by parts",
+        "src/model/patch.rs",
+        "let Shape::Sphere(_) = shape else { return None };",
+        "let Shape::Disc(_) = shape else { return None };",
+        "physics",
+        "obstacles::a_curved_wall_is_seen_past_an_edge_by_parts",
+        10,
+    ),
+    Break(
+        "The quadrature's bound holds for errors that fall like a power",
+        "src/model/series.rs",
+        ".max(algebraic)",
+        ".max(0.0 * algebraic)",
+        "lib",
+        "model::series::tests::errors_that_fall_like_a_power_are_bounded",
+        10,
+    ),
+    Break(
+        "The rim of a large mesh in sight is found by halving",
+        "src/model/patch.rs",
+        "const HALVINGS: u32 = 3;",
+        "const HALVINGS: u32 = 0;",
+        "lib",
+        "model::patch::tests::a_rim_is_found_by_halving",
+        10,
+    ),
 ]
 
 
