@@ -143,7 +143,7 @@ pub(super) fn share(significance: f64, deviations: bool) -> f64 {
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to
 /// rounding. Where every entry is left out, or dark in both, there is no evidence and no agreement;
 /// nor where what was fitted first has as many unknowns as there are entries, nor where nothing
-/// speaks against a model of which half may be its integration ([`VAGUE`]).
+/// speaks against a model of which half may be its integration.
 pub fn agree(
     evidence: Evidence<'_>,
     test: Test,
