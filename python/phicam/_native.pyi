@@ -178,6 +178,7 @@ def calibrate(
     frame_gain: float | None,
     free_scale: bool,
     error_field: bool,
+    background: bool,
     replicates: int | None,
     elements: tuple[int, int] | None,
     considered: bool,
