@@ -292,7 +292,7 @@ fn a_method_without_bands_is_kept_beside_one_that_has_them() {
         .iter()
         .map(|o| (o["method"].as_str().unwrap(), o["bands"].is_object()))
         .collect();
-    assert_eq!(bands, [("joint", true), ("joint-tv", false)]);
+    assert_eq!(bands, [("joint-tv", false), ("joint", true)]);
 }
 
 #[test]
