@@ -40,7 +40,7 @@ use crate::model::{Effort, ElementGrid, Kernel, MatrixModel, Occlusion};
 use crate::scene::Scene;
 use crate::transport::Control;
 use found::Picture;
-use frames::TermsOf;
+use frames::{Side, TermsOf};
 use mistaken::{Rearranged, likeliest};
 use order::Fault;
 use picture::Pictured;
@@ -165,10 +165,9 @@ impl LocatedPlan {
         let all = || coarse.iter().chain(searches.iter().flatten());
         let best = all().max_by(|a, b| a.log_likelihood().total_cmp(&b.log_likelihood()));
         let best = best.ok_or(LabError::DARK)?;
-        let order = self.order(scene, photographs, &lengths, control)?;
         let log_likelihood = best.log_likelihood();
         let stated = [log_likelihood, best.fit.misfit];
-        let mistaken = self.mistaken(scene, photographs, (&lengths, stated), control)?;
+        let (order, mistaken) = self.orders(scene, photographs, (&lengths, stated), control)?;
         let there = altered
             .apply(scene, best.size)
             .unwrap_or_else(|| scene.clone());
@@ -240,63 +239,45 @@ impl LocatedPlan {
         }))
     }
 
-    /// The order that the stated one is mistaken for, if so: `stated` are its log likelihood and
-    /// misfit.
-    fn mistaken(
+    /// The test of the spots' order, and the order that the stated one is mistaken for, if so;
+    /// elements by their centres. `stated` are the log likelihood and the misfit of the stated one.
+    fn orders(
         &self,
         scene: &Scene,
         photographs: &Unexplained<'_>,
         (lengths, stated): (&Lengths, [f64; 2]),
         control: Control<'_>,
-    ) -> Result<Option<Mistaken>, LabError> {
+    ) -> Result<(Option<Order>, Option<Mistaken>), LabError> {
         if self.orders == 0 || photographs.phi.ncols() < 2 {
-            return Ok(None);
+            return Ok((None, None));
         }
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
         let element: Vec<usize> = (0..model.albedo.len()).collect();
         let terms = TermsOf::centres(&model, &element);
         let root = covariance_root(&model.places, lengths.fixed)?;
+        let sides = Side::all(photographs, terms.camera)?;
+        let tried = [self.orders, self.seed];
+        let order = order::order(&sides, terms, &root, tried, control);
+        let order = order.map_err(|fault| match fault {
+            Fault::Linalg(e) => LabError::from(e),
+            Fault::Stopped(e) => e.into(),
+        })?;
         let frame = [scene.camera.columns, scene.camera.rows];
-        let all = Rearranged::all(frame, photographs.phi.ncols());
-        let Some(order) = likeliest(photographs, terms, &root, all)? else {
-            return Ok(None);
+        let all = Rearranged::all(frame, sides.len());
+        let Some(other) = likeliest((photographs, &sides), terms, &root, all)? else {
+            return Ok((order, None));
         };
         let again = Self { orders: 0, ..*self };
         let quiet = Control {
             progress: &|_| (),
             ..control
         };
-        let own = order.of(photographs);
+        let own = other.of(photographs);
         let found = again.locate(scene, &own.unexplained(photographs.patterns), quiet)?;
         let misfit = found.curve.iter().find(|at| at.log_likelihood == 0.0);
         let misfit = misfit.map_or(f64::INFINITY, |at| at.misfit);
-        Ok(Mistaken::new(
-            order.what,
-            stated,
-            [found.log_likelihood, misfit],
-        ))
-    }
-
-    /// The test of the spots' order, elements by their centres.
-    fn order(
-        &self,
-        scene: &Scene,
-        photographs: &Unexplained<'_>,
-        lengths: &Lengths,
-        control: Control<'_>,
-    ) -> Result<Option<Order>, LabError> {
-        if self.orders == 0 || photographs.phi.ncols() < 2 {
-            return Ok(None);
-        }
-        let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
-        let element: Vec<usize> = (0..model.albedo.len()).collect();
-        let terms = TermsOf::centres(&model, &element);
-        let root = covariance_root(&model.places, lengths.fixed)?;
-        let tried = [self.orders, self.seed];
-        order::order(photographs, terms, &root, tried, control).map_err(|fault| match fault {
-            Fault::Linalg(e) => e.into(),
-            Fault::Stopped(e) => e.into(),
-        })
+        let mistaken = Mistaken::new(other.what, stated, [found.log_likelihood, misfit]);
+        Ok((order, mistaken))
     }
 }
 

@@ -244,6 +244,23 @@ fn likelihoods_of_different_errors_are_comparable() {
     }
 }
 
+/// The slope at `values` by some unknowns against differences of the cost.
+pub(super) fn is_slope_of_the_cost(problem: &Problem<'_>, values: &[f64], unknowns: &[usize]) {
+    let state = problem.state(values, 1.0, None).unwrap();
+    let slope = problem.whole_slope(&state);
+    for &k in unknowns {
+        let h = 1e-4;
+        let at = |x: f64| {
+            let mut values = values.to_vec();
+            values[k] += x;
+            problem.cost(&values, 1.0, &state.prior).unwrap().unwrap()
+        };
+        let want = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+        let off = (slope[k] - want).abs() / want.abs().max(1.0);
+        assert!(off < 1e-5, "{k}: {} for {want}", slope[k]);
+    }
+}
+
 /// Slopes are those of the cost, gains among them; of an obstructed scene too.
 #[test]
 fn slopes_are_those_of_the_cost() {
@@ -260,19 +277,7 @@ fn slopes_are_those_of_the_cost() {
     let problem = problem(&scene, &parameters, photographs, &pictures, frames);
     let mut values = vec![0.3, -0.05, 0.02, 0.04];
     values.extend((0..frames).map(|l| 0.01 * (l % 3) as f64));
-    let state = problem.state(&values, 1.0, None).unwrap();
-    let slope = problem.whole_slope(&state);
-    for k in [0, 1, 2, 3, 4, 5, 4 + frames - 1] {
-        let h = 1e-4;
-        let at = |x: f64| {
-            let mut values = values.clone();
-            values[k] += x;
-            problem.cost(&values, 1.0, &state.prior).unwrap().unwrap()
-        };
-        let want = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
-        let off = (slope[k] - want).abs() / want.abs().max(1.0);
-        assert!(off < 1e-5, "{k}: {} for {want}", slope[k]);
-    }
+    is_slope_of_the_cost(&problem, &values, &[0, 1, 2, 3, 4, 5, 4 + frames - 1]);
 }
 
 /// A hinge, a distance and a yaw that are wrong come back within three errors, which are small, and

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::frames::Frame;
+use super::frames::{Frame, Side, TermsOf};
 use crate::matrix::Matrix;
 use crate::num::linalg::{LinalgError, product, svd, tr_product};
 use crate::num::search::largest;
@@ -105,6 +105,19 @@ pub(super) struct Fit {
 }
 
 impl Fit {
+    /// To frames that are each lit by one of the spots.
+    ///
+    /// # Errors
+    /// [`LinalgError`].
+    pub(super) fn of_sides<'s>(
+        lit: impl Iterator<Item = (&'s Side, usize)>,
+        terms: TermsOf<'_>,
+        root: &Matrix,
+    ) -> Result<Option<Self>, LinalgError> {
+        let frames: Vec<Frame> = lit.map(|(side, spot)| side.lit(terms, spot)).collect();
+        Self::new(&Frame::sum(frames.iter(), terms.elements), root)
+    }
+
     /// The fit to `all` photographs with K^½ = `root`; none where there is no light.
     ///
     /// # Errors

@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::frames::{Frame, Side, TermsOf};
+use super::frames::{Side, TermsOf};
 use super::likelihood::Fit;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
@@ -146,21 +146,27 @@ impl Rearranged {
 
 /// The likeliest order of `all` at the place of `terms`; none where that is the stated one.
 pub(super) fn likeliest(
-    of: &Unexplained<'_>,
+    (of, sides): (&Unexplained<'_>, &[Side]),
     terms: TermsOf<'_>,
     root: &Matrix,
     all: Vec<Rearranged>,
 ) -> Result<Option<Rearranged>, LinalgError> {
-    let fit = |of: &Unexplained<'_>| -> Result<f64, LinalgError> {
-        let sides = Side::all(of, terms.camera)?;
-        let frames = sides.iter().enumerate().map(|(l, s)| s.lit(terms, l));
-        let frames: Vec<Frame> = frames.collect();
-        let found = Fit::new(&Frame::sum(frames.iter(), terms.elements), root)?;
+    let fit = |sides: &[Side], frames: &[usize]| -> Result<f64, LinalgError> {
+        let lit = frames.iter().map(|l| &sides[*l]).zip(0..);
+        let found = Fit::of_sides(lit, terms, root)?;
         Ok(found.map_or(f64::NEG_INFINITY, |fit| fit.log_likelihood))
     };
-    let mut best = (fit(of)?, None);
+    let stated: Vec<usize> = (0..sides.len()).collect();
+    let mut best = (fit(sides, &stated)?, None);
     for order in all {
-        let found = fit(&order.of(of).unexplained(of.patterns))?;
+        // Frames are what they are in any order; pixels see other light in other places.
+        let found = if order.frames == stated {
+            let own = order.of(of);
+            let sides = Side::all(&own.unexplained(of.patterns), terms.camera)?;
+            fit(&sides, &stated)?
+        } else {
+            fit(sides, &order.frames)?
+        };
         if found > best.0 {
             best = (found, Some(order));
         }

@@ -3,9 +3,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frames::{Frame, Side, TermsOf};
+use super::frames::{Side, TermsOf};
 use super::likelihood::Fit;
-use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
 use crate::num::stream::{Key, Sampling, Stream};
@@ -35,20 +34,15 @@ pub(super) enum Fault {
 
 /// The test with `tried` orders of `seed`; none where there is no light.
 pub(super) fn order(
-    of: &Unexplained<'_>,
+    sides: &[Side],
     terms: TermsOf<'_>,
     root: &Matrix,
     [tried, seed]: [u64; 2],
     control: Control<'_>,
 ) -> Result<Option<Order>, Fault> {
-    let sides = Side::all(of, terms.camera).map_err(Fault::Linalg)?;
     let fit = |spots: &[usize]| {
-        let frames: Vec<Frame> = sides
-            .iter()
-            .zip(spots)
-            .map(|(s, l)| s.lit(terms, *l))
-            .collect();
-        Fit::new(&Frame::sum(frames.iter(), terms.elements), root).map_err(Fault::Linalg)
+        let lit = sides.iter().zip(spots.iter().copied());
+        Fit::of_sides(lit, terms, root).map_err(Fault::Linalg)
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
     let Some(own) = fit(&stated)? else {
