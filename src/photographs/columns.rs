@@ -32,6 +32,9 @@ pub(super) struct Columns {
     pub common: f64,
     /// Part of the variance that is that of the flat field, mean over the entries.
     pub of_flat: f64,
+    /// What the dark frames' rounding, alike in all pixels, moves entries by, over their standard
+    /// errors, root mean square.
+    pub rounded: f64,
 }
 
 impl Columns {
@@ -66,7 +69,9 @@ impl Columns {
             by_own_light: 0.0,
             common: 0.0,
             of_flat: 0.0,
+            rounded: 0.0,
         };
+        let mut known = 0usize;
         let mut slopes = Matrix::zeros(pixels, spots);
         let weights = placing.footprints.gathered(&vec![1.0; found.mean.len()]);
         let code = Codes {
@@ -114,6 +119,11 @@ impl Columns {
                 if let Some(variance) = &variance {
                     // All pixels share the gain's error: it is not one of the entry.
                     found.stderr[(pixel, spot)] = factor * variance[pixel].sqrt();
+                    if variance[pixel] > 0.0 {
+                        found.rounded +=
+                            (corrected.rounded * weights[pixel]).powi(2) / variance[pixel];
+                        known += 1;
+                    }
                     slopes[(pixel, spot)] = factor * slope[pixel] / weights[pixel];
                 }
             }
@@ -123,6 +133,7 @@ impl Columns {
         found.mean.iter_mut().for_each(|x| *x /= seen.max(1) as f64);
         found.common /= seen.max(1) as f64;
         found.of_flat /= seen.max(1) as f64;
+        found.rounded = (found.rounded / known.max(1) as f64).sqrt();
         if found.phi.iter().any(|x| !x.is_finite()) {
             return Err(refused(
                 "a flux comes out as infinite",

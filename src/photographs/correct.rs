@@ -43,6 +43,9 @@ pub struct Corrected {
     pub common: f64,
     /// The same of the flat field: a factor of each pixel that all photographs have in common.
     pub of_flat: f64,
+    /// Error of the dark frames' mean that all pixels share, counts/s: values that noise does not
+    /// move from one integer to the next are all rounded alike.
+    pub rounded: f64,
 }
 
 /// Part of the mean below which a pixel of a flat field counts as dead.
@@ -147,7 +150,25 @@ impl Correction<'_> {
             slope,
             common: common / f64::from(known.max(1)),
             of_flat: of_flat / f64::from(known.max(1)),
+            rounded: self.rounded(),
         })
+    }
+
+    /// The root mean square of what averaging the dark frames leaves of their rounding, counts/s; 0
+    /// where the offsets of the pixels differ by more than rounding, which then is chance.
+    fn rounded(&self) -> f64 {
+        let (Some(dark), Some(noise)) = (self.dark, self.noise) else {
+            return 0.0;
+        };
+        let n = dark.light.len() as f64;
+        let mean = dark.light.iter().sum::<f64>() / n;
+        let spread = dark.light.iter().map(|x| (x - mean) * (x - mean));
+        if spread.sum::<f64>() > dark.rounding.iter().sum::<f64>() {
+            return 0.0;
+        }
+        let each = dark.light.iter().zip(&dark.rounding);
+        let left = each.map(|(x, rounding)| noise.of_one([*x; 2], [*rounding, dark.share]).1);
+        (left.sum::<f64>() / n).sqrt() / self.exposure
     }
 }
 
@@ -208,6 +229,39 @@ mod tests {
             "{}",
             found.common
         );
+    }
+
+    /// Dark frames of 0.13 counts of noise, whose mean over offsets from 0 to 1 is off by rounding:
+    /// the root mean square of E\[round(o + 0.13 N)\] − o by the normal distribution. Offsets that
+    /// differ from pixel to pixel are rounded by chance, and so is what noise moves.
+    #[test]
+    fn rounding_that_all_pixels_share_is_told() {
+        let steps = 1000;
+        let off = |k: usize| {
+            let o = (k as f64 + 0.5) / f64::from(steps) - 0.5;
+            // Of o + 0.13 N above ½ and below −½, the next ones being 8 σ away.
+            let above = |z: f64| 0.5 * libm::erfc(z / std::f64::consts::SQRT_2);
+            above((0.5 - o) / 0.13) - above((0.5 + o) / 0.13) - o
+        };
+        let due = (0..steps as usize).map(|k| off(k) * off(k)).sum::<f64>() / f64::from(steps);
+        let of = |dark: &[f64], read: f64| {
+            let dark = shot(dark);
+            let correction = Correction {
+                dark: Some(&dark),
+                flat: None,
+                noise: Some(CameraNoise::new(0.5, read).unwrap()),
+                exposure: 2.0,
+            };
+            let light = shot(&vec![70.0; dark.light.len()]);
+            correction.apply("a", &light).unwrap().rounded
+        };
+        let alike = of(&[1.0, 1.0, 1.1, 1.0], 0.13);
+        assert!(
+            (alike / (0.5 * due.sqrt()) - 1.0).abs() < 1e-3,
+            "{alike} {due}"
+        );
+        assert_eq!(of(&[1.0, 4.0, 2.0, 1.0], 0.13), 0.0);
+        assert!(of(&[1.0; 4], 1.0) < 1e-3 * alike);
     }
 
     /// Var (a + b + c)/3 = (Var a + Var b + Var c)/9: by hand from 30, 60 and 90 counts of gain 0.5

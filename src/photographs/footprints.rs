@@ -4,12 +4,12 @@
 //! e′ the étendue of the photograph's camera for each area u of the picture. The scene's camera
 //! collects Φ_p = ∫_p L(x)·e dA over its footprint on the wall, with e = A_lens·h²/r⁴ the étendue
 //! for each area of the wall, h and r the camera's distances from the wall's plane and from x. With
-//! L even within q,
+//! L·e′ linear within q, its slope that between the pixels beside q,
 //!
-//! > Φ_p = (1/κ)·Σ_q a_pq·y_q·ρ_pq,   ρ = e·|∂A/∂u|/e′
+//! > Φ_p = (1/κ)·Σ_q a_pq·(y_q + ∇y_q·(x_pq − x_q))·ρ_pq,   ρ = e·|∂A/∂u|/e′
 //!
-//! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, and ρ the
-//! ratio of the étendues at its centroid. A photograph without marks is that of the scene's own
+//! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, x_pq its
+//! centroid, x_q the middle of q, and ρ the ratio of the étendues at x_pq. A photograph without marks is that of the scene's own
 //! camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to a factor (as the aperture of a
 //! camera is), such that of a wall of even radiance the sum of Φ is that of the photograph's pixels
 //! in the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of even radiance; with a camera
@@ -18,18 +18,27 @@
 //! The footprint is a polygon in the photograph, cut exactly at the borders of pixels. With a lens
 //! each of its edges is drawn by eight chords: an edge of n pixels whose curve leaves the chord by
 //! k·n² px is then off by k·n²/64 px, which is 1e-3 of a pixel for the strongest lenses and n = 10.
-//! Pixels of the photograph are independent; those at a border of footprints belong to two.
+//! Pixels of the photograph are independent; those at a border of footprints belong to two, which
+//! then share their noise ([`Footprints::shared`]).
+
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
 use super::error::{PhotographError, refused};
 use super::mapping::Mapping;
+use crate::num::digits::figure;
 use crate::scene::Camera;
 
 /// Chords of an edge with a lens.
 const CHORDS: usize = 8;
 /// Part of a footprint that may lie outside the photograph by rounding.
 const OUTSIDE: f64 = 1e-6;
+/// Distance from the middle of a pixel, px, below which it is rounding.
+const MIDDLE: f64 = 1e-9;
+/// Fewest pixels of the photograph in a footprint, on average, and how many are to be aimed at.
+const COARSEST: f64 = 1.0;
+const FINE: f64 = 4.0;
 
 /// How the étendue of the photograph's camera goes with the place in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +63,8 @@ impl Footprints {
     /// Those of `camera` in a photograph of `size` (columns, rows) under `mapping`.
     ///
     /// # Errors
-    /// [`PhotographError::Refused`] where no footprint lies in the photograph.
+    /// [`PhotographError::Refused`] where no footprint lies in the photograph, or the photograph has
+    /// fewer pixels than the scene's camera.
     pub fn new(
         camera: &Camera,
         mapping: &Mapping,
@@ -75,16 +85,42 @@ impl Footprints {
                 "check the marks or the crop, and which of their axes is which",
             ));
         }
+        let whole: f64 = pieces().map(|p| p.fraction).sum();
+        let seen = rows.iter().filter(|row| !row.is_empty()).count();
+        let each = whole / seen as f64;
+        if each < COARSEST * (1.0 - OUTSIDE) {
+            let fewer = (each / FINE).sqrt();
+            let [columns, rows] =
+                [camera.columns, camera.rows].map(|n| (n as f64 * fewer).floor().max(1.0));
+            return Err(refused(
+                format!(
+                    "the photograph has {} pixels for each of the scene's, which would share them",
+                    figure(each, 2)
+                ),
+                format!(
+                    "give the scene fewer, as `camera.pixels = [{columns}, {rows}]`, or finer photographs"
+                ),
+            ));
+        }
         let unit = match evenness {
             Evenness::Same => 1.0,
             _ => area / weighed,
         };
-        let weights = |pieces: Pieces| {
-            let weight = |p: Piece| (p.pixel, p.fraction * p.ratio * unit);
-            pieces.into_iter().map(weight).collect()
-        };
-        let rows = rows.into_iter().map(weights).collect();
+        let weights = |pieces: &Pieces| weights(pieces, size, unit);
+        let rows = rows.iter().map(weights).collect();
         Ok(Self { rows })
+    }
+
+    /// How many times as large the error of the sum of all footprints is as if each had pixels of
+    /// the photograph of its own: √(Σ_q (Σ_p w_pq)²/Σ_pq w_pq²).
+    pub fn shared(&self) -> f64 {
+        let mut together = BTreeMap::<u32, f64>::new();
+        let mut apart = 0.0;
+        for (q, weight) in self.rows.iter().flatten() {
+            *together.entry(*q).or_default() += weight;
+            apart += weight * weight;
+        }
+        (together.values().map(|w| w * w).sum::<f64>() / apart).sqrt()
     }
 
     /// The photograph's pixels with their weights for a pixel of the scene; empty where its
@@ -122,7 +158,9 @@ impl Footprints {
 
 /// What a footprint has of one pixel of the photograph.
 struct Piece {
-    pixel: u32,
+    pixel: [usize; 2],
+    /// Centroid of it, from the middle of the pixel, px.
+    off: [f64; 2],
     /// Of the photograph's pixel.
     fraction: f64,
     /// ρ up to a factor.
@@ -132,6 +170,33 @@ struct Piece {
 }
 
 type Pieces = Vec<Piece>;
+
+/// The weights of the photograph's pixels in a footprint: fraction times ρ of each, and those that
+/// make its slope of the pixels beside it, or of itself at the border of the photograph.
+fn weights(pieces: &Pieces, size: [usize; 2], unit: f64) -> Vec<(u32, f64)> {
+    let mut all = BTreeMap::<u32, f64>::new();
+    let mut add = |[u, v]: [usize; 2], weight: f64| {
+        *all.entry((u + v * size[0]) as u32).or_default() += weight;
+    };
+    for piece in pieces {
+        let weight = piece.fraction * piece.ratio * unit;
+        add(piece.pixel, weight);
+        for axis in 0..2 {
+            if piece.off[axis].abs() < MIDDLE {
+                continue;
+            }
+            let at = piece.pixel[axis];
+            let [low, high] = [at.saturating_sub(1), (at + 1).min(size[axis] - 1)];
+            let slope = weight * piece.off[axis] / (high - low).max(1) as f64;
+            for (to, sign) in [(high, 1.0), (low, -1.0)] {
+                let mut beside = piece.pixel;
+                beside[axis] = to;
+                add(beside, sign * slope);
+            }
+        }
+    }
+    all.into_iter().collect()
+}
 
 /// The pieces of the footprint of `pixel`.
 fn row(
@@ -175,7 +240,8 @@ fn row(
                 return Vec::new();
             };
             pieces.push(Piece {
-                pixel: (u + v * width) as u32,
+                pixel: [u, v],
+                off: [centroid[0] - centre, centroid[1] - middle],
                 fraction,
                 ratio,
                 own,

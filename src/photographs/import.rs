@@ -13,8 +13,8 @@ use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, copied, little_left, mirrored, misread, no_light, roughly, stretched,
-    unsaid,
+    bent, by_own_light, copied, little_left, mirrored, misread, no_light, roughly, rounded, shared,
+    stretched, unsaid,
 };
 use crate::scene::Scene;
 
@@ -75,6 +75,8 @@ pub fn import(
         let extent = extent.unwrap_or(shots.size.map(|n| n as f64));
         warnings.extend(stretched(extent, [view.u().length(), view.v().length()]));
     }
+    warnings.extend(rounded(columns.rounded));
+    warnings.extend(shared(placing.footprints.shared()));
     warnings.extend(line.and_then(|line| bent(&line)));
     if noise.is_some_and(|n| n.has_offset) {
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());

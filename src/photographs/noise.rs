@@ -63,6 +63,17 @@ impl CameraNoise {
         [rounding, share]: [f64; 2],
         frames: usize,
     ) -> f64 {
+        let (moving, left) = self.of_one([stored, dark], [rounding, share]);
+        (moving + rounding - left) / frames.max(1) as f64 + left
+    }
+
+    /// The variance of one before rounding, and what averaging any number leaves of that of the
+    /// rounding.
+    pub(super) fn of_one(
+        &self,
+        [stored, dark]: [f64; 2],
+        [rounding, share]: [f64; 2],
+    ) -> (f64, f64) {
         let light = if self.has_offset {
             stored
         } else {
@@ -70,8 +81,7 @@ impl CameraNoise {
         };
         let one = self.gain * light.max(0.0) + self.read_variance;
         let moving = share * one.max(0.0);
-        let left = left_by_rounding(moving, rounding);
-        (moving + rounding - left) / frames.max(1) as f64 + left
+        (moving, left_by_rounding(moving, rounding))
     }
 }
 

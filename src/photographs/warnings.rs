@@ -10,7 +10,7 @@ use super::placing::Placing;
 use super::read::SourceFile;
 use super::set::Set;
 use crate::matrix::{Matrix, TOO_DARK};
-use crate::num::digits::figure;
+use crate::num::digits::{figure, significant};
 use crate::scene::Camera;
 
 /// Error of a mark, px, above which it was not read where it is.
@@ -19,6 +19,10 @@ const MISREAD: f64 = 1.0;
 const FITS: f64 = 1e-3;
 /// How far from square the pixels of a view without marks may be.
 const STRETCH: f64 = 0.02;
+/// Part of a standard error from which on what all entries share is told.
+const ROUNDED: f64 = 0.5;
+/// Errors that are larger by more than this are others than stated.
+const SHARED: f64 = 1.1;
 /// Part of the view over which a mapping's direction is taken.
 const STEP: f64 = 1e-3;
 
@@ -57,6 +61,32 @@ pub(super) fn by_own_light(errors: f64) -> Option<String> {
              those of the light measured, and where entries are weighted by them the whole is too dark by {} \
              of its standard errors; take more light",
             figure(errors, 2)
+        )
+    })
+}
+
+/// That all pixels of the dark frames are rounded alike, which moves entries by so many of their
+/// standard errors.
+pub(super) fn rounded(errors: f64) -> Option<String> {
+    (errors > ROUNDED).then(|| {
+        format!(
+            "the dark frames' noise is too small to move their values from one integer to the next, so that all \
+             pixels are rounded alike: every entry may be off by {} of its standard errors, all the same way, and \
+             more dark frames do not help. Save more bits, raise the camera's gain, or recover with --background",
+            figure(errors, 2)
+        )
+    })
+}
+
+/// That footprints share pixels of the photograph, so that the errors of what they show together are
+/// larger than stated.
+pub(super) fn shared(times: f64) -> Option<String> {
+    (times > SHARED).then(|| {
+        format!(
+            "the photograph has few pixels for each of the scene's, and those beside each other share them: errors \
+             of what they show together are {} times as large as stated, and light that varies within a pixel of \
+             the photograph is taken as linear there; give the scene fewer `camera.pixels`, or finer photographs",
+            significant(times, 3)
         )
     })
 }

@@ -147,3 +147,69 @@ fn polygons_have_their_area() {
     assert!((area_and_centroid(&between(&triangle, 0, [1.0, 2.0])).0 - 1.5).abs() < 1e-15);
     assert!(between(&triangle, 0, [4.0, 5.0]).is_empty());
 }
+
+/// Light that rises linearly over the photograph is that of each footprint however this cuts the
+/// pixels, and what all footprints have is what the crop has.
+#[test]
+fn linear_light_is_gathered_exactly() {
+    let camera = camera();
+    let [left, top, width, height] = [5.3, 3.1, 20.0, 13.8];
+    let mapping = Mapping::upright([left, top], [width, height]);
+    let found = Footprints::new(&camera, &mapping, [40, 24], Evenness::Same).unwrap();
+    let light = |u: f64, v: f64| 7.0 + 0.9 * u - 0.4 * v;
+    // Pixel q is of unit area about its middle, u from the left border.
+    let values: Vec<f64> = (0..40 * 24)
+        .map(|q| light(f64::from(q % 40) + 0.5, f64::from(q / 40) + 0.5))
+        .collect();
+    let [wide, high] = [width / 8.0, height / 6.0];
+    for (p, sum) in found.gathered(&values).into_iter().enumerate() {
+        let [i, j] = [(p % 8) as f64, 5.0 - (p / 8) as f64];
+        let due = wide * high * light(left + (i + 0.5) * wide, top + (j + 0.5) * high);
+        assert!((sum / due - 1.0).abs() < 1e-12, "{p}: {sum} {due}");
+    }
+    // At the border of the photograph the slope is that to the next pixel.
+    let border = Mapping::upright([0.0; 2], [20.3, 13.7]);
+    let found = Footprints::new(&camera, &border, [21, 14], Evenness::Same).unwrap();
+    let values: Vec<f64> = (0..21 * 14)
+        .map(|q| light(f64::from(q % 21) + 0.5, f64::from(q / 21) + 0.5))
+        .collect();
+    let sum: f64 = found.gathered(&values).iter().sum();
+    let due = 20.3 * 13.7 * light(0.5 * 20.3, 0.5 * 13.7);
+    assert!((sum / due - 1.0).abs() < 1e-12);
+}
+
+/// Footprints of 2 × 2 pixels, half a pixel to the right of them: along the rows the weights are
+/// −1/16, ½, 9/8, ½ and −1/16, their squares add up to 1.7734375, and those of the sum of n
+/// footprints to 2n − 3 + 2 (1/256 + ¼ + (17/16)²). Footprints of whole pixels share none.
+#[test]
+fn footprints_that_share_pixels_say_by_how_much() {
+    let camera = camera();
+    let shared = |left: f64, size: [f64; 2]| {
+        let mapping = Mapping::upright([left, 4.0], size);
+        let found = Footprints::new(&camera, &mapping, [60, 50], Evenness::Same).unwrap();
+        found.shared()
+    };
+    assert!((shared(4.0, [32.0, 18.0]) - 1.0).abs() < 1e-12);
+    let n = 8.0_f64;
+    let together = 2.0 * n - 3.0 + 2.0 * (1.0 / 256.0 + 0.25 + 289.0 / 256.0);
+    let due = (together / (n * 1.773_437_5)).sqrt();
+    let found = shared(4.5, [16.0, 12.0]);
+    assert!((found / due - 1.0).abs() < 1e-9, "{found} {due}");
+}
+
+/// A photograph of fewer pixels than the scene's camera has is refused, of as many it is not.
+#[test]
+fn a_photograph_is_no_coarser_than_the_scene() {
+    let camera = camera();
+    let of = |width: f64, height: f64| {
+        let mapping = Mapping::upright([2.0; 2], [width, height]);
+        Footprints::new(&camera, &mapping, [40, 24], Evenness::Same)
+    };
+    assert!(of(8.0, 6.0).is_ok());
+    let told = of(4.0, 6.0).unwrap_err().to_string();
+    assert!(
+        told.contains("0.50 pixels for each of the scene's")
+            && told.contains("camera.pixels = [2, 2]"),
+        "{told}"
+    );
+}
