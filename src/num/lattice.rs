@@ -38,6 +38,16 @@ pub struct Lattice {
     u: DMatrix<f64>,
     t: DMatrix<f64>,
     y: DVector<f64>,
+    /// T_ii² and e^−½T_ii².
+    steep: Vec<Steep>,
+}
+
+/// T² and e^−½T².
+type Steep = [f64; 2];
+
+/// Of T_ii.
+fn steep(own: f64) -> Steep {
+    [own * own, libm::exp(-0.5 * own * own)]
 }
 
 /// A point that was drawn.
@@ -70,6 +80,7 @@ impl Lattice {
             u,
             t: first.r.clone(),
             y: first.d.clone(),
+            steep: Vec::new(),
         };
         let mut changed = start.is_some();
         loop {
@@ -84,7 +95,10 @@ impl Lattice {
             }
             match found.reduce() {
                 None => return Ok(None),
-                Some(0) => return Ok(Some(found)),
+                Some(0) => {
+                    found.steep = found.t.diagonal().iter().map(|own| steep(*own)).collect();
+                    return Ok(Some(found));
+                }
                 Some(_) => changed = true,
             }
         }
@@ -164,15 +178,16 @@ impl Lattice {
     /// The first is the nearest of all unless more than `keep` seemed nearer on the way.
     pub fn nearest(&self, keep: usize) -> Vec<Vec<f64>> {
         let n = self.t.ncols();
-        // Distances², coordinates, and what is left of y in the rows above: n numbers a point.
+        // Distances², what is left of y in the rows that are open, and what was chosen of which
+        // point.
         let mut distances = vec![0.0];
-        let mut coordinates = vec![0.0; n];
         let mut left: Vec<f64> = self.y.as_slice().to_vec();
+        let mut chosen: Vec<Vec<(usize, f64)>> = Vec::with_capacity(n);
         for k in (0..n).rev() {
             let own = self.t[(k, k)];
             let mut next: Vec<(f64, usize, f64)> = Vec::with_capacity(distances.len() * CHILDREN);
             for (parent, distance) in distances.iter().enumerate() {
-                let centre = left[parent * n + k] / own;
+                let centre = left[parent * (k + 1) + k] / own;
                 next.extend(around(centre).take(CHILDREN).map(|z| {
                     let off = own * (z - centre);
                     (distance + off * off, parent, z)
@@ -189,22 +204,23 @@ impl Lattice {
             }
             next.sort_unstable_by(before);
             let column = &self.t.column(k).data.into_slice()[..k];
-            let (mut all, mut rest) = (Vec::new(), Vec::new());
-            all.reserve(next.len() * n);
-            rest.reserve(next.len() * n);
+            let mut rest = Vec::with_capacity(next.len() * k);
             for (_, parent, z) in &next {
-                let from = parent * n..(parent + 1) * n;
-                all.extend_from_slice(&coordinates[from.clone()]);
-                let last = all.len() - n + k;
-                all[last] = *z;
-                let old = &left[from];
+                let old = &left[parent * (k + 1)..][..k];
                 rest.extend(old.iter().zip(column).map(|(old, t)| old - z * t));
-                rest.extend_from_slice(&old[k..]);
             }
-            distances = next.into_iter().map(|(distance, _, _)| distance).collect();
-            (coordinates, left) = (all, rest);
+            left = rest;
+            distances = next.iter().map(|(distance, _, _)| *distance).collect();
+            chosen.push(next.into_iter().map(|(_, parent, z)| (parent, z)).collect());
         }
-        coordinates.chunks(n).map(|zeta| self.point(zeta)).collect()
+        let mut zeta = vec![0.0; n];
+        let points = (0..distances.len()).map(|mut point| {
+            for (zeta, all) in zeta.iter_mut().zip(chosen.iter().rev()) {
+                (point, *zeta) = all[point];
+            }
+            self.point(&zeta)
+        });
+        points.collect()
     }
 
     /// A point of chance: coordinate after coordinate, last first, each with the probability
@@ -219,7 +235,7 @@ impl Lattice {
         for k in (0..n).rev() {
             let own = self.t[(k, k)];
             let centre = left[k] / own;
-            weigh(&mut choices, own * own, centre);
+            weigh(&mut choices, self.steep[k], centre);
             let all: f64 = choices.iter().map(|c| c.1).sum();
             let mut rest = random.uniform() * all;
             let chosen = choices.iter().find(|(_, weight)| {
@@ -265,7 +281,7 @@ fn around(centre: f64) -> impl Iterator<Item = f64> {
 /// The integers z [`around`] a centre c with exp −½T²((z − c)² − (z₀ − c)²), z₀ the nearest, down
 /// to e to −[`NEGLIGIBLE`]: with k = |z − z₀| and f = |z₀ − c| it is bᵏ·ᵏ·a^±ᵏ, b = e^−½T², a =
 /// e^(T² f).
-fn weigh(choices: &mut Vec<(f64, f64)>, square: f64, centre: f64) {
+fn weigh(choices: &mut Vec<(f64, f64)>, [square, b]: Steep, centre: f64) {
     let (half, f) = (-0.5 * square, (centre - centre.round()).abs());
     choices.clear();
     choices.push((centre.round(), 1.0));
@@ -273,7 +289,7 @@ fn weigh(choices: &mut Vec<(f64, f64)>, square: f64, centre: f64) {
     if log(1.0, f) <= -NEGLIGIBLE {
         return;
     }
-    let (a, b) = (libm::exp(square * f), libm::exp(half));
+    let a = libm::exp(square * f);
     // bᵏ·ᵏ, b²ᵏ⁺¹ and aᵏ.
     let (mut power, mut next, mut slope) = (1.0, b, 1.0);
     for (j, z) in (1u32..).zip(around(centre).skip(1)) {

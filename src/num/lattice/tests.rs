@@ -187,7 +187,7 @@ fn weights_of_integers_are_the_normal_law_s() {
             let log = |z: f64| -0.5 * square * (z - centre) * (z - centre);
             let top = log(centre.round());
             let mut choices = Vec::new();
-            weigh(&mut choices, square, centre);
+            weigh(&mut choices, steep(square.sqrt()), centre);
             let mut least = 1.0_f64;
             for (&(z, weight), near) in choices.iter().zip(around(centre)) {
                 let direct = libm::exp(log(z) - top);
