@@ -9,7 +9,7 @@ use crate::lab::Integration;
 use crate::lab::misplaced::normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::model::{Effort, Kernel, MatrixModel, Occlusion};
+use crate::model::Occlusion;
 use crate::scene::{Parameter, Scene, file::SceneFile};
 use crate::transport::Control;
 
@@ -192,9 +192,17 @@ const BRIGHT: [usize; 3] = [5, 6, 9];
 
 /// Photographs of `scene` with so much noise, relative to their root mean square.
 fn photographed(scene: &Scene, relative: f64, seed: u64) -> (Matrix, Matrix) {
-    let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
-    let model = MatrixModel::over_areas(scene, kernel, Some([4, 4]), occlusion, Effort::USUAL);
-    let model = model.unwrap();
+    photographed_as(&plan([0.0; 2], 0), scene, relative, seed)
+}
+
+/// The same, integrated as this plan does.
+fn photographed_as(
+    plan: &LocatedPlan,
+    scene: &Scene,
+    relative: f64,
+    seed: u64,
+) -> (Matrix, Matrix) {
+    let model = plan.model(scene).unwrap();
     let albedo: Vec<f64> = (0..16)
         .map(|j| if BRIGHT.contains(&j) { 0.8 } else { 0.1 })
         .collect();
@@ -215,6 +223,14 @@ fn plan(range: [f64; 2], orders: u64) -> LocatedPlan {
         integration: Integration::Quadrature,
         orders,
         seed: 1,
+    }
+}
+
+/// By centres, where many photographs are located.
+fn by_centres(range: [f64; 2], orders: u64) -> LocatedPlan {
+    LocatedPlan {
+        integration: Integration::Centres,
+        ..plan(range, orders)
     }
 }
 
@@ -276,7 +292,7 @@ fn an_order_that_is_easily_mistaken_is_told() {
     let what = |phi: &Matrix, stderr: &Matrix| {
         let plan = LocatedPlan {
             steps: 5,
-            ..plan([-1.0, 1.0], 1)
+            ..by_centres([-1.0, 1.0], 1)
         };
         let found = located(&scene, phi, stderr, plan);
         assert!(found.mistaken.is_none() || !found.is_found());
@@ -284,7 +300,7 @@ fn an_order_that_is_easily_mistaken_is_told() {
     };
     let at = |u: usize, v: usize| u + 8 * v;
     for (noise, seed) in [(1e-2, 3), (0.2, 5)] {
-        let (phi, stderr) = photographed(&truth, noise, seed);
+        let (phi, stderr) = photographed_as(&by_centres([0.0; 2], 0), &truth, noise, seed);
         assert_eq!(what(&phi, &stderr), None);
         let (pixels, n) = phi.shape();
         let frames = |of: &dyn Fn(usize) -> usize| {
@@ -316,10 +332,11 @@ fn an_order_that_is_easily_mistaken_is_told() {
 fn little_noise_is_searched_as_finely() {
     let scene = bench();
     let truth = moved(&scene, 0.173);
+    let plan = by_centres([-1.5, 1.5], 0);
     let mut sum = 0.0;
     for seed in 0..8 {
-        let (phi, stderr) = photographed(&truth, 1e-4, 20 + seed);
-        let found = located(&scene, &phi, &stderr, plan([-1.5, 1.5], 0));
+        let (phi, stderr) = photographed_as(&plan, &truth, 1e-4, 20 + seed);
+        let found = located(&scene, &phi, &stderr, plan);
         let (size, error) = (found.size.unwrap(), found.stderr().unwrap());
         let z = (size - 0.173) / error;
         assert!(z.abs() < 4.0 && error < 0.01, "{size} ± {error}");
@@ -354,9 +371,10 @@ fn yaw_turns_as_the_parameter_does() {
 fn errors_are_as_large_as_stated() {
     let scene = bench();
     let truth = moved(&scene, 0.2);
+    let plan = by_centres([-1.5, 1.5], 0);
     let holds = |seed: &u64| {
-        let (phi, stderr) = photographed(&truth, 1e-2, 100 + seed);
-        let found = located(&scene, &phi, &stderr, plan([-1.5, 1.5], 0));
+        let (phi, stderr) = photographed_as(&plan, &truth, 1e-2, 100 + seed);
+        let found = located(&scene, &phi, &stderr, plan);
         let z = (found.size.unwrap() - 0.2) / found.stderr().unwrap();
         z.abs() < 1.96
     };
