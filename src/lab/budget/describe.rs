@@ -61,7 +61,7 @@ impl ErrorBudget {
 
     fn table(&self) -> Table {
         Table {
-            caption: "What the matrix model leaves out, relative to the flux (norm over all entries of Φcam)".to_owned(),
+            caption: "What the matrix model leaves out, relative to the light of three bounces with nothing in the way (norm over all entries of Φcam)".to_owned(),
             file: Some("budget.csv".to_owned()),
             note: format!(
                 "Terms outside the sum would be added by a model that takes the étendue as \

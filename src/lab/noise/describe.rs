@@ -60,11 +60,17 @@ impl NoiseStudy {
         format!("How much noise each recovery bears: {}{sensor}", self.scene)
     }
 
-    /// That the scene's own picture was left out, if it was.
+    /// That the scene's own picture was left out, and which boards have no place.
     fn unstudied(&self) -> impl Iterator<Item = String> {
         let left_out = self.own.is_none();
         let words = "The scene's own picture is not among these: it is a board of other checks, which --boards names.";
-        left_out.then(|| words.to_owned()).into_iter()
+        let unplaced = self.unplaced.iter().map(|checks| {
+            format!(
+                "A board of {checks} × {checks} checks was not studied: {checks} divides no number of --elements."
+            )
+        });
+        let own = left_out.then(|| words.to_owned());
+        own.into_iter().chain(unplaced)
     }
 
     /// Which method bears how much noise, the scene's own object first.

@@ -105,6 +105,13 @@ impl NoisePlan {
         own.max_by_key(|(_, e)| (elements == Some([*e; 2]), *e))
     }
 
+    /// Boards whose checks divide none of the elements.
+    pub(super) fn unplaced(&self) -> Vec<usize> {
+        let divides = |checks: &usize| self.elements.iter().any(|e| e % checks == 0);
+        let all = self.boards.iter().copied();
+        all.filter(|checks| !divides(checks)).collect()
+    }
+
     /// Objects with the elements that they are recovered at: the scene's own picture, where it is
     /// no board, and the boards.
     pub(super) fn objects(&self, scene: &Scene) -> Vec<(Picture, usize)> {

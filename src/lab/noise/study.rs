@@ -31,6 +31,9 @@ pub struct NoiseStudy {
     /// Which object and elements are the scene's own; none where it was not studied.
     #[serde(skip)]
     pub own: Option<(Picture, usize)>,
+    /// Boards that were asked for, and have no place on any of the elements.
+    #[serde(skip)]
+    pub unplaced: Vec<usize>,
     /// Where the noise of renders lies on the axis, if it was measured.
     pub render_noise: Vec<RenderNoise>,
     /// Every trial as text.

@@ -139,6 +139,7 @@ impl NoiseTasks {
             curves,
             best: winners,
             own: NoisePlan::own(&self.scene, &self.objects),
+            unplaced: plan.unplaced(),
             render_noise,
             ledger: write_ledger(&self.plan.study(&self.scene), &trials),
         }

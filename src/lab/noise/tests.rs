@@ -183,6 +183,23 @@ fn the_error_of_a_linear_method_is_proportional_to_the_noise() {
     assert!(quiet.mean > 0.0 && quiet.draws == 5);
 }
 
+/// A board that has no place on any of the elements is named, and the others are studied.
+#[test]
+fn a_board_without_a_place_is_named() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![2, 3],
+        levels: vec![1e-3],
+        seeds: 1,
+        ..plan
+    };
+    let found = run(&scene, &plan);
+    assert_eq!(found.unplaced, [3]);
+    let told = |note: &String| note.contains("board of 3 × 3 checks was not studied");
+    assert_eq!(found.describe().notes.iter().filter(|n| told(n)).count(), 1);
+    assert!(found.ledger.lines().count() > 2);
+}
+
 #[test]
 fn a_plan_without_object_is_refused() {
     let (scene, plan) = small();
