@@ -9,8 +9,8 @@ use super::fit::Judged;
 use super::gains::drifting;
 use crate::num::digits::{figure, significant};
 use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
-pub(super) use contested::contest;
 use contested::contested;
+pub(super) use contested::{TELLS, contest};
 use errors::{
     DETERMINED, HALF, alike_untold, by_entries, few_replicates, integrated, overstated, shared,
     undetermined, unseen,
@@ -36,7 +36,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
     let every = [
         outlier(judged),
         misfit(found, judged),
-        contested(judged),
+        contested(found.method, judged),
         unjudged(found, judged),
         shared(judged),
         few_replicates(found, judged),

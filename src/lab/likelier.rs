@@ -2,11 +2,9 @@
 
 use nalgebra::DVector;
 
+use super::doubt::TELLS;
 use crate::num::digits::figure;
 use crate::recovery::{Method, Recovered};
-
-/// Evidences that differ by less, ln, do not tell: a factor of 20.
-const TELLS: f64 = 3.0;
 
 /// Of the methods that know how likely the photographs are by what they assume (`joint-gp`:
 /// neighbours resemble one another; `joint-two-valued`: two levels in any pattern) the one of the

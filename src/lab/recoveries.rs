@@ -3,6 +3,7 @@
 use super::finding::{Cell, Column, Finding, Table};
 use super::objects::RecoveredObject;
 use crate::num::digits::{figure, significant};
+use crate::recovery::Method;
 
 /// What was recovered of each surface, in the order in which they first appear: a run lists it
 /// method by method.
@@ -145,10 +146,21 @@ fn pooled(group: &[&RecoveredObject]) -> String {
     })
 }
 
-/// Under which assumption the photographs are likelier, where two were tried.
+/// Under which assumption the photographs are likelier, where two were tried; that none was, where
+/// errors rest on one.
 fn likelier(group: &[&RecoveredObject]) -> String {
     let words = group.iter().find_map(|r| r.likelier.as_ref());
-    words.map_or(String::new(), |words| format!("{words} "))
+    if let Some(words) = words {
+        return format!("{words} ");
+    }
+    let rests =
+        |r: &&RecoveredObject| r.method == Method::JointGp.name() && r.standard_error.is_some();
+    if !group.iter().any(rests) {
+        return String::new();
+    }
+    "Errors and bands of joint-gp hold on average over pictures whose neighbours resemble one another; whether \
+     another assumption (joint-two-valued) makes the photographs likelier was not compared. "
+        .to_owned()
 }
 
 /// How much of some surfaces, each recovered by the same method, the photographs determine, in

@@ -16,6 +16,8 @@ const APART: f64 = 3.0;
 /// Evidence that settles which of two is right, ln: the less likely one alone is contested.
 const SETTLES: f64 = 10.0;
 
+/// Evidence that tells one assumption from another, ln: a factor of 20.
+pub(in crate::lab) const TELLS: f64 = 3.0;
 /// Errors of another picture over those of two levels, from which on these are the assumption's.
 const WIDER: f64 = 3.0;
 
@@ -56,7 +58,13 @@ fn rival(own: &Recovered, other: &Recovered) -> Option<Rival> {
         ahead: both.map(|(own, other)| own - other),
     };
     let is_settled = found.ahead.is_some_and(|ahead| ahead > SETTLES);
-    (!is_settled && (found.apart > APART || is_surer(own.method, &found))).then_some(found)
+    let rests = is_surer(own.method, &found) || is_unlikelier(own.method, &found);
+    (!is_settled && (found.apart > APART || rests)).then_some(found)
+}
+
+/// Whether alike neighbours are what another assumption makes less likely.
+fn is_unlikelier(own: Method, rival: &Rival) -> bool {
+    own == Method::JointGp && rival.ahead.is_some_and(|ahead| ahead < -TELLS)
 }
 
 /// Whether two levels are surer than another assumption as likely makes them.
@@ -64,8 +72,8 @@ fn is_surer(own: Method, rival: &Rival) -> bool {
     own == Method::JointTwoValued && rival.ahead.is_some() && rival.wider > WIDER
 }
 
-/// What is said of it.
-pub(super) fn contested(judged: &Judged) -> Option<String> {
+/// What is said of it, of the picture of `own`.
+pub(super) fn contested(own: Method, judged: &Judged) -> Option<String> {
     let Rival {
         method,
         apart,
@@ -78,6 +86,13 @@ pub(super) fn contested(judged: &Judged) -> Option<String> {
              errors apart. What at least one of them assumes does not hold, and its errors and probabilities \
              rest on that. Look at both, and believe what they have in common",
             significant(apart, 3)
+        ));
+    }
+    if own == Method::JointGp {
+        return Some(format!(
+            "its errors and bands hold if neighbours resemble one another. What {method} assumes makes the \
+             photographs likelier, by e^{}: they may be too small by any factor. Look at its picture as well",
+            figure(-ahead?, 2)
         ));
     }
     let likelier = match ahead? {

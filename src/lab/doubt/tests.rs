@@ -461,8 +461,14 @@ fn pictures_that_contradict_each_other_are_told() {
     found[1].method = Method::JointTwoValued;
     found[1].reflectance = found[0].reflectance.clone();
     found[1].standard_error = found[0].standard_error.as_ref().map(|s| s / 20.0);
-    for (ahead, told) in [(2.0, true), (20.0, false)] {
+    // Alike neighbours that two levels make less likely are told by themselves.
+    let levels = Some(Method::JointTwoValued);
+    for (ahead, expected) in [
+        (2.0, [None, gp]),
+        (5.0, [levels, gp]),
+        (20.0, [levels, None]),
+    ] {
         found[1].log_evidence = found[0].log_evidence.map(|e| e + ahead);
-        assert_eq!(contested(&found), [None, gp.filter(|_| told)], "{ahead}");
+        assert_eq!(contested(&found), expected, "{ahead}");
     }
 }
