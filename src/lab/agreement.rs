@@ -59,6 +59,10 @@ pub struct Agreement {
     /// pixels and spots; `None` where they are as they were given.
     #[serde(default)]
     pub pooled: Option<u32>,
+    /// Entries whose standard errors were enlarged by what shadows add that few paths meet; 0 where
+    /// the model is not refused without.
+    #[serde(default)]
+    pub seldom: usize,
     /// Family-wise error rate of the verdict.
     pub significance: f64,
     /// Entries compared.
@@ -206,6 +210,7 @@ pub fn agree(
         integration: String::new(),
         occlusion: None,
         pooled: None,
+        seldom: 0,
         significance: test.significance,
         entries,
         left_out: z.len() - entries,

@@ -74,6 +74,8 @@ pub struct Certainty {
     /// Replicates from which each was estimated, or as from which it is known; none where they are
     /// known.
     pub replicates: Option<u32>,
+    /// Paths of each entry, of traced light.
+    pub paths: Option<u64>,
     /// Replicates from which each was estimated before those of pixels and spots were pooled; none
     /// where they were not.
     pub pooled_from: Option<u32>,
@@ -90,6 +92,7 @@ impl Certainty {
         Self {
             errors,
             replicates,
+            paths: None,
             pooled_from: None,
             follows_entries: false,
         }
@@ -97,7 +100,10 @@ impl Certainty {
 
     /// What a render leaves.
     pub fn of(plan: &Plan) -> Self {
-        Self::new(Errors::of(plan.estimator), Some(plan.budget.blocks))
+        Self {
+            paths: Some(plan.budget.samples()),
+            ..Self::new(Errors::of(plan.estimator), Some(plan.budget.blocks))
+        }
     }
 
     /// As from how many replicates errors are known where they were pooled.

@@ -201,6 +201,7 @@ mod results;
 #[path = "sample_tests.rs"]
 pub(crate) mod sample;
 mod score;
+mod seldom;
 mod sensitivity;
 mod shaded;
 mod smooth;

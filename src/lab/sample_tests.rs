@@ -86,6 +86,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
         integration: "centres".into(),
         occlusion: None,
         pooled: None,
+        seldom: 0,
         significance: 0.01,
         entries: 30720,
         left_out: 0,

@@ -15,6 +15,7 @@ use super::gains::Gains;
 use super::other_light::Left;
 use super::refined::Refined;
 use super::score::Derivatives;
+use super::seldom::Seldom;
 use super::unmodelled::unmodelled;
 
 /// Replicates from which errors are known well enough for deviations of the scene to be fitted.
@@ -174,14 +175,6 @@ pub fn validate(
     let refined = Refined::of(measured.phi, measured.stderr, test.known, beside.left_out);
     let known = refined.certainty;
     let test = Test { known, ..test };
-    let evidence = Evidence {
-        traced: measured.phi,
-        stderr: &refined.stderr,
-        model: &phi,
-        bound: Some(&bound),
-        left_out: beside.left_out,
-        eliminated: None,
-    };
     let share = visible.as_ref().map(|v| &v.share);
     let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);
     let derivatives = Derivatives {
@@ -190,11 +183,31 @@ pub fn validate(
     };
     // Below, a variance has no variance itself, and no fit a known error.
     let derivatives = (test.known.replicates.is_none_or(|n| n >= FEWEST)).then_some(&derivatives);
-    let (mut agreement, z) = if beside.estimates() {
-        beside_other_light(evidence, test, &beside, derivatives)?
-    } else {
-        agree(evidence, test, derivatives)
+    let verdict = |stderr: &Matrix| {
+        let evidence = Evidence {
+            traced: measured.phi,
+            stderr,
+            model: &phi,
+            bound: Some(&bound),
+            left_out: beside.left_out,
+            eliminated: None,
+        };
+        if beside.estimates() {
+            beside_other_light(evidence, test, &beside, derivatives)
+        } else {
+            Ok(agree(evidence, test, derivatives))
+        }
     };
+    let (mut agreement, mut z) = verdict(&refined.stderr)?;
+    if let (true, false, Some(share)) = (agreement.evidence, agreement.agrees, share)
+        && let Some(seldom) = Seldom::new(scene, kernel, share, known)?
+    {
+        let (stderr, entries) = seldom.added_to(&refined.stderr, &phi);
+        if entries > 0 {
+            (agreement, z) = verdict(&stderr)?;
+            agreement.seldom = entries;
+        }
+    }
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
     agreement.occlusion = visible.as_ref().map(|v| v.points);

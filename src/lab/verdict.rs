@@ -99,8 +99,14 @@ impl Agreement {
         let pooled = self.pooled.map_or(String::new(), |n| {
             format!("; standard errors pooled over pixels and spots, known as from {n} replicates")
         });
+        let seldom = match self.seldom {
+            0 => String::new(),
+            n => format!(
+                "; of {n} entries the errors allow for shadows that fewer than 4 paths a block meet"
+            ),
+        };
         let test = format!(
-            "{} model, {}{occlusion}{pooled}; significance {}, P(χ²) {}, P(|z|) {}",
+            "{} model, {}{occlusion}{pooled}{seldom}; significance {}, P(χ²) {}, P(|z|) {}",
             self.kernel,
             self.integration,
             figure(self.significance, 2),

@@ -49,4 +49,4 @@ pub use matrix_model::{MatrixModel, element_grids, is_obstructed};
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
 pub use swept::Swept;
 pub use terms::{Terms, TermsRate};
-pub use visible::{Visible, visible};
+pub use visible::{Visible, shadows, visible};

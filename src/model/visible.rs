@@ -11,6 +11,7 @@ use super::kernel::Kernel;
 use super::obstacles::obstacles;
 use super::occlusion::{Both, Obstructed};
 use super::parts::HiddenParts;
+use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
@@ -38,6 +39,8 @@ const TARGET: f64 = 3e-4;
 const SCATTER: f64 = 4.5;
 /// Standard deviations of what viewpoints leave to chance in a bound.
 const DEVIATIONS: f64 = 2.0;
+/// Things in the way that are left out one by one, at most.
+const MOST_SINGLE: usize = 16;
 /// Entries of each side that are held at once.
 const HELD: usize = 1 << 22;
 
@@ -54,7 +57,45 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
     if scene.hidden().next().is_none() {
         return Err(ModelError::NothingHidden);
     }
-    let obstacles = obstacles(scene);
+    past(scene, kernel, &obstacles(scene))
+}
+
+/// The part, 0 to 1, of each entry's light past all others that a thing in the way takes, pixels ×
+/// spots, for each thing; of more than [`MOST_SINGLE`] what all together take. `share` is what all
+/// of them leave.
+///
+/// # Errors
+/// [`ModelError::NothingHidden`].
+pub fn shadows(scene: &Scene, kernel: Kernel, share: &Matrix) -> Result<Vec<Matrix>, ModelError> {
+    let all = obstacles(scene);
+    // Both sides of a surface are one thing.
+    let thing = |id: &ShapeId| scene.front_of(*id as usize).unwrap_or(*id as usize);
+    let mut things: Vec<usize> = all.iter().map(thing).collect();
+    things.sort_unstable();
+    things.dedup();
+    if things.len() > MOST_SINGLE {
+        return Ok(vec![share.map(|left| 1.0 - left)]);
+    }
+    let taken = |out: &usize| {
+        let others = all.iter().copied().filter(|id| thing(id) != *out);
+        let others: Vec<ShapeId> = others.collect();
+        let without = past(scene, kernel, &others)?;
+        Ok(match without {
+            None => share.map(|left| 1.0 - left),
+            Some(past) => share.zip_map(&past.share, |left, most| {
+                if most > left { 1.0 - left / most } else { 0.0 }
+            }),
+        })
+    };
+    things.iter().map(taken).collect()
+}
+
+/// What these obstacles leave.
+fn past(
+    scene: &Scene,
+    kernel: Kernel,
+    obstacles: &[ShapeId],
+) -> Result<Option<Visible>, ModelError> {
     if obstacles.is_empty() {
         return Ok(None);
     }
@@ -68,7 +109,7 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
     };
     let mut cells = light(&parts);
     let by = |division| {
-        let past = divided::past(scene, kernel, &obstacles, division);
+        let past = divided::past(scene, kernel, obstacles, division);
         let phi = photographs(&past, &cells);
         Ok::<_, ModelError>((past, phi))
     };

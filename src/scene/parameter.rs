@@ -128,6 +128,14 @@ fn is_back(surface: &Surface, all: &[Surface]) -> bool {
     all.iter().any(|front| back(&front.name) == surface.name)
 }
 
+impl Scene {
+    /// The surface of which surface `id` is the back; none of a front.
+    pub fn front_of(&self, id: usize) -> Option<usize> {
+        let own = &self.surfaces[id].name;
+        self.surfaces.iter().position(|s| back(&s.name) == *own)
+    }
+}
+
 /// The table of uncertainties, checked.
 pub(super) fn uncertainty(
     scene: &Scene,
