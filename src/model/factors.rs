@@ -1,5 +1,7 @@
 //! The three-bounce integral of each element past what stands in the way, as few products.
 
+mod own;
+
 use rayon::prelude::*;
 
 use super::cells::{HiddenCell, cells_of_elements};
@@ -10,11 +12,13 @@ use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
 use super::occlusion::{Both, Obstructed};
-use super::terms::{NEGLIGIBLE, NEGLIGIBLE_SMOOTH, Terms, compressed};
+use super::terms::{NEGLIGIBLE, NEGLIGIBLE_SMOOTH, Terms, averaged, compressed};
+use super::visible::DEVIATIONS;
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, Surface};
+use own::{Own, chance, moved, stacked};
 
 /// Element j's light between every spot and every pixel where something stands in the way:
 ///
@@ -27,8 +31,9 @@ use crate::scene::{Scene, Surface};
 pub struct Factors {
     /// A_j.
     pub terms: Terms,
-    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, and what
-    /// another division of footprints and spots does.
+    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, at least two
+    /// standard deviations of what viewpoints leave to chance where camera and laser both see a part
+    /// of a cell, and what another division of footprints and spots does.
     pub change: f64,
     /// Cells of the hidden surfaces in the last step.
     pub cells: usize,
@@ -110,7 +115,9 @@ pub(super) struct Settled<'a> {
 /// the target, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
 /// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3, to a
 /// target of 1e-6. Footprints and spots are divided until that changes the A_j of elements cut once
-/// by less.
+/// by less. Viewpoints jump from light to shadow as the geometry moves: where the light is to follow
+/// it smoothly, of a cell that pixel and spot both see a part of the product of the means stays,
+/// off like the size of a cell.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
@@ -120,6 +127,7 @@ pub(super) fn settled<'a>(
     obstacles: &[ShapeId],
     grids: &[ElementGrid],
     Effort { target, share }: Effort,
+    follows: bool,
 ) -> Result<Settled<'a>, ModelError> {
     let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
     let is_smooth = obstacles.is_empty();
@@ -145,6 +153,7 @@ pub(super) fn settled<'a>(
             scene,
             kernel,
             footprints: cut.seen(scene, level),
+            follows,
             occlusion: divided::past(scene, kernel, obstacles, division),
             negligible: if is_smooth {
                 NEGLIGIBLE_SMOOTH
@@ -175,7 +184,8 @@ pub(super) fn settled<'a>(
         halvings += 1;
         of = cut_in(halvings);
         let next = past.all(&of)?;
-        let change = moved(before.as_ref().unwrap_or(&rough), &next);
+        let change =
+            moved(before.as_ref().unwrap_or(&rough), &next).max(DEVIATIONS * chance(&next));
         if exhausted || halvings == MOST_HALVINGS || change < target {
             return Ok(Settled {
                 past,
@@ -206,17 +216,6 @@ fn cells_of(
     of
 }
 
-/// An element's terms, and its light without and with what stands in the way, summed over its
-/// cells.
-struct Own {
-    camera: Matrix,
-    laser: Matrix,
-    /// By pixel.
-    seen: Vec<Both>,
-    /// By spot.
-    lit: Vec<Both>,
-}
-
 /// The scene past what stands in the way.
 pub(super) struct Past<'a> {
     scene: &'a Scene,
@@ -224,6 +223,8 @@ pub(super) struct Past<'a> {
     /// Of each pixel.
     pub footprints: Vec<Vec<WallPoint>>,
     pub occlusion: Obstructed<'a>,
+    /// Whether the light is to follow the geometry smoothly.
+    follows: bool,
     /// Terms of an element that are left out.
     negligible: f64,
 }
@@ -238,26 +239,42 @@ impl Past<'_> {
     fn own(&self, cells: &[HiddenCell]) -> Result<Own, ModelError> {
         let (pixels, spots) = (self.occlusion.pixels(), self.occlusion.spots());
         let camera: Vec<Vec<Both>> = cells.iter().map(|c| self.occlusion.camera(c)).collect();
-        let laser: Vec<Vec<Both>> = (0..spots).map(|l| self.occlusion.laser(l, cells)).collect();
+        let of_spot = |l| self.occlusion.laser_and_viewpoints(l, cells);
+        let laser: Vec<Vec<[f64; 3]>> = (0..spots).map(of_spot).collect();
         let add = |[a, b]: Both, [x, y]: Both| [a + x, b + y];
         let seen = |p: usize| {
             let each = cells.iter().zip(&camera);
             let each = each.map(|(cell, seen)| seen[p].map(|x| x * cell.area));
             each.fold([0.0; 2], add)
         };
-        let lit = |l: usize| laser[l].iter().copied().fold([0.0; 2], add);
+        let lit = |l: usize| {
+            let each = laser[l].iter().map(|[all, left, _]| [*all, *left]);
+            each.fold([0.0; 2], add)
+        };
         let each = cells.iter().zip(&camera);
         let ratio: Vec<Vec<f64>> = each
             .map(|(cell, seen)| self.by_rule(cell, &unobstructed(seen)))
             .collect();
-        let c = Matrix::from_fn(pixels, cells.len(), |p, q| ratio[q][p] * camera[q][p][1]);
-        let d = Matrix::from_fn(cells.len(), spots, |q, l| laser[l][q][1]);
+        let c = [0, 1].map(|which: usize| {
+            Matrix::from_fn(pixels, cells.len(), |p, q| {
+                ratio[q][p] * camera[q][p][which]
+            })
+        });
+        let d = [1, 2]
+            .map(|which: usize| Matrix::from_fn(cells.len(), spots, |q, l| laser[l][q][which]));
+        let (c, d, variance) = if self.follows {
+            let ([_, seen], [mean, _]) = (c, d);
+            (seen, mean, 0.0)
+        } else {
+            averaged(c, d)
+        };
         let (camera, laser) = compressed((&c, &d), self.negligible)?;
         Ok(Own {
             camera,
             laser,
             seen: (0..pixels).map(seen).collect(),
             lit: (0..spots).map(lit).collect(),
+            variance,
         })
     }
 
@@ -276,22 +293,6 @@ impl Past<'_> {
 /// What a cell sends with nothing in the way, of what it sends to each pixel.
 pub(super) fn unobstructed(seen: &[Both]) -> Vec<f64> {
     seen.iter().map(|[all, _]| *all).collect()
-}
-
-/// ‖A′ − A‖/‖A′‖ over all elements.
-fn moved(before: &[Own], now: &[Own]) -> f64 {
-    // ⟨C D, C′ D′⟩ = ⟨CᵀC′, D D′ᵀ⟩.
-    let dot = |a: &Own, b: &Own| {
-        a.camera
-            .tr_mul(&b.camera)
-            .dot(&(&a.laser * b.laser.transpose()))
-    };
-    let each = before.iter().zip(now);
-    let change: f64 = each
-        .map(|(a, b)| dot(a, a) - 2.0 * dot(a, b) + dot(b, b))
-        .sum();
-    let whole: f64 = now.iter().map(|b| dot(b, b)).sum();
-    (change.max(0.0) / whole.max(f64::MIN_POSITIVE)).sqrt()
 }
 
 impl Settled<'_> {
@@ -322,13 +323,4 @@ impl Settled<'_> {
         let all = [[before, &self.own]].into_iter().chain(walls);
         all.map(|pair| pair.map(|own| stacked(own))).collect()
     }
-}
-
-/// The terms of all elements one behind the other.
-fn stacked(all: &[Own]) -> Terms {
-    let size = all
-        .first()
-        .map_or((0, 0), |own| (own.seen.len(), own.lit.len()));
-    let each: Vec<_> = all.iter().map(|own| (&own.camera, &own.laser)).collect();
-    Terms::stacked(&each, size)
 }

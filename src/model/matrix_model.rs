@@ -185,7 +185,7 @@ impl MatrixModel {
         let photographs = scene.camera.pixels() as f64 * scene.laser.spots.len() as f64;
         let model = Self::beside(scene, kernel, elements, photographs)?;
         let obstacles = considered(scene, occlusion);
-        let settled = settled(scene, kernel, &obstacles, &model.grids, effort)?;
+        let settled = settled(scene, kernel, &obstacles, &model.grids, effort, false)?;
         let (mut factors, shares) = settled.joined();
         factors.steps = settled.steps();
         Ok(model.with_factors((factors, shares)))
@@ -265,7 +265,14 @@ impl MatrixModel {
         if obstacles.is_empty() {
             return Ok(self);
         }
-        let settled = settled(scene, self.kernel, &obstacles, &self.grids, Effort::USUAL)?;
+        let settled = settled(
+            scene,
+            self.kernel,
+            &obstacles,
+            &self.grids,
+            Effort::USUAL,
+            false,
+        )?;
         Ok(self.with_factors(settled.joined()))
     }
 

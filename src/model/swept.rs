@@ -45,7 +45,7 @@ impl Swept {
         if obstacles.is_empty() {
             return Ok(None);
         }
-        let settled = settled(scene, Kernel::Physical, &obstacles, &grids, effort)?;
+        let settled = settled(scene, Kernel::Physical, &obstacles, &grids, effort, true)?;
         let (factors, _) = settled.joined();
         let mut rates: Vec<Option<Terms>> = velocities.iter().map(|_| None).collect();
         let past = &settled.past;

@@ -102,6 +102,50 @@ fn summed(
     all
 }
 
+/// Both sides of an element's light from its cells, and the variance of all of it together by the
+/// choice of viewpoints. The camera's side is known at a cell's viewpoint x, with nothing in the
+/// way (c₀) and past what is (c), the laser's as the mean d̄ over the cell and as d′ at x. Of a cell
+/// that pixel and spot both see a part of, c d̄ is not the mean of c d, but
+///
+/// > Σ_q c d̄ + (α c₀ − c)(d̄ − d′) = Σ_q c d′ + α c₀ (d̄ − d′)
+///
+/// has that mean over x whatever α is. For each pixel the α that adds least, by squares:
+/// α = Σ_q w c₀ c / Σ_q w c₀², w = Σ_l (d̄ − d′)². Where a pixel sees all of the cells that spots see
+/// a part of, or nothing of them, α is 1 or 0, and nothing is added.
+pub(super) fn averaged(
+    [all, seen]: [Matrix; 2],
+    [mean, at_viewpoint]: [Matrix; 2],
+) -> (Matrix, Matrix, f64) {
+    let apart = &mean - at_viewpoint;
+    let weights: Vec<f64> = apart.row_iter().map(|r| r.norm_squared()).collect();
+    let mut more = -&seen;
+    for (p, mut row) in more.row_iter_mut().enumerate() {
+        let sum = |side: &Matrix| {
+            let each = weights.iter().enumerate();
+            each.map(|(q, w)| w * all[(p, q)] * side[(p, q)])
+                .sum::<f64>()
+        };
+        let (part, whole) = (sum(&seen), sum(&all));
+        if part > 0.0 {
+            row += all.row(p) * (part / whole);
+        }
+    }
+    let added = |q: &usize| weights[*q] > 0.0 && more.column(*q).amax() > 0.0;
+    let parted: Vec<usize> = (0..weights.len()).filter(added).collect();
+    if parted.is_empty() {
+        return (seen, mean, 0.0);
+    }
+    let variance = |q: &usize| weights[*q] * more.column(*q).norm_squared();
+    let variance = parted.iter().map(variance).sum();
+    let columns = seen
+        .column_iter()
+        .chain(parted.iter().map(|q| more.column(*q)));
+    let rows = mean.row_iter().chain(parted.iter().map(|q| apart.row(*q)));
+    let camera = Matrix::from_columns(&columns.collect::<Vec<_>>());
+    let laser = Matrix::from_rows(&rows.collect::<Vec<_>>());
+    (camera, laser, variance)
+}
+
 /// C D with as few terms as carry it but for this share: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′
 /// Σ′)(V′ᵀ Vᵀ).
 pub(super) fn compressed(

@@ -38,7 +38,7 @@ const TARGET: f64 = 3e-4;
 /// 4.4).
 const SCATTER: f64 = 4.5;
 /// Standard deviations of what viewpoints leave to chance in a bound.
-const DEVIATIONS: f64 = 2.0;
+pub(super) const DEVIATIONS: f64 = 2.0;
 /// Things in the way that are left out one by one, at most.
 const MOST_SINGLE: usize = 16;
 /// Entries of each side that are held at once.
