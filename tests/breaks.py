@@ -1378,8 +1378,8 @@ BREAKS = [
     Break(
         "Elements are integrated to what photographs ask for, however close by",
         "src/model/factors.rs",
-        "ratio[q][p] * camera[q][p][1]",
-        "ratio[cells.len() / 2][p] * camera[q][p][1]",
+        "ratio[q][p] * camera[q][p][which]",
+        "ratio[cells.len() / 2][p] * camera[q][p][which]",
         "physics",
         "model::elements_close_by_are_integrated",
         10,
@@ -1563,6 +1563,15 @@ BREAKS = [
         "physics",
         "divided::pixel_and_spot_see_the_same_part_of_a_cell",
         9,
+    ),
+    Break(
+        "So they are over what both see of an element",
+        "src/model/terms.rs",
+        "weights[*q] > 0.0 &&",
+        "weights[*q] < 0.0 &&",
+        "physics",
+        "divided::pixel_and_spot_see_the_same_part_of_an_element",
+        10,
     ),
     Break(
         "Footprints are cut along edges of walls in sight, and by planes of boards",
