@@ -31,9 +31,9 @@ use own::{Own, chance, moved, stacked};
 pub struct Factors {
     /// A_j.
     pub terms: Terms,
-    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, at least two
-    /// standard deviations of what viewpoints leave to chance where camera and laser both see a part
-    /// of a cell, and what another division of footprints and spots does.
+    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, at least
+    /// two standard deviations of what viewpoints leave to chance where camera and laser both see a
+    /// part of a cell, and what another division of footprints and spots does.
     pub change: f64,
     /// Cells of the hidden surfaces in the last step.
     pub cells: usize,
@@ -115,9 +115,9 @@ pub(super) struct Settled<'a> {
 /// the target, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
 /// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3, to a
 /// target of 1e-6. Footprints and spots are divided until that changes the A_j of elements cut once
-/// by less. Viewpoints jump from light to shadow as the geometry moves: where the light is to follow
-/// it smoothly, of a cell that pixel and spot both see a part of the product of the means stays,
-/// off like the size of a cell.
+/// by less. Viewpoints jump from light to shadow as the geometry moves: where the light is to
+/// follow it smoothly, of a cell that pixel and spot both see a part of the product of the means
+/// stays, off like the size of a cell.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].

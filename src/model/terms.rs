@@ -104,14 +104,14 @@ fn summed(
 
 /// Both sides of an element's light from its cells, and the variance of all of it together by the
 /// choice of viewpoints. The camera's side is known at a cell's viewpoint x, with nothing in the
-/// way (c₀) and past what is (c), the laser's as the mean d̄ over the cell and as d′ at x. Of a cell
-/// that pixel and spot both see a part of, c d̄ is not the mean of c d, but
+/// way (c₀) and past what is (c), the laser's as the mean d̄ over the cell and as d′ at x. Of a
+/// cell that pixel and spot both see a part of, c d̄ is not the mean of c d, but
 ///
 /// > Σ_q c d̄ + (α c₀ − c)(d̄ − d′) = Σ_q c d′ + α c₀ (d̄ − d′)
 ///
-/// has that mean over x whatever α is. For each pixel the α that adds least, by squares:
-/// α = Σ_q w c₀ c / Σ_q w c₀², w = Σ_l (d̄ − d′)². Where a pixel sees all of the cells that spots see
-/// a part of, or nothing of them, α is 1 or 0, and nothing is added.
+/// has that mean over x whatever α is. For each pixel the α that adds least, by squares: α = Σ_q w
+/// c₀ c / Σ_q w c₀², w = Σ_l (d̄ − d′)². Where a pixel sees all of the cells that spots see a part
+/// of, or nothing of them, α is 1 or 0, and nothing is added.
 pub(super) fn averaged(
     [all, seen]: [Matrix; 2],
     [mean, at_viewpoint]: [Matrix; 2],

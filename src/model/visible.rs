@@ -61,7 +61,7 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
 }
 
 /// The part, 0 to 1, of each entry's light past all others that a thing in the way takes, pixels ×
-/// spots, for each thing; of more than [`MOST_SINGLE`] what all together take. `share` is what all
+/// spots, for each thing; of more than 16 what all together take. `share` is what all
 /// of them leave.
 ///
 /// # Errors

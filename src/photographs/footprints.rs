@@ -9,11 +9,12 @@
 //! > Φ_p = (1/κ)·Σ_q a_pq·(y_q + ∇y_q·(x_pq − x_q))·ρ_pq,   ρ = e·|∂A/∂u|/e′
 //!
 //! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, x_pq its
-//! centroid, x_q the middle of q, and ρ the ratio of the étendues at x_pq. A photograph without marks is that of the scene's own
-//! camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to a factor (as the aperture of a
-//! camera is), such that of a wall of even radiance the sum of Φ is that of the photograph's pixels
-//! in the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of even radiance; with a camera
-//! matrix it is [`Lens::etendue`](super::Lens::etendue); else it is taken as even.
+//! centroid, x_q the middle of q, and ρ the ratio of the étendues at x_pq. A photograph without
+//! marks is that of the scene's own camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to
+//! a factor (as the aperture of a camera is), such that of a wall of even radiance the sum of Φ is
+//! that of the photograph's pixels in the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of
+//! even radiance; with a camera matrix it is [`Lens::etendue`](super::Lens::etendue); else it is
+//! taken as even.
 //!
 //! The footprint is a polygon in the photograph, cut exactly at the borders of pixels. With a lens
 //! each of its edges is drawn by eight chords: an edge of n pixels whose curve leaves the chord by
@@ -63,8 +64,8 @@ impl Footprints {
     /// Those of `camera` in a photograph of `size` (columns, rows) under `mapping`.
     ///
     /// # Errors
-    /// [`PhotographError::Refused`] where no footprint lies in the photograph, or the photograph has
-    /// fewer pixels than the scene's camera.
+    /// [`PhotographError::Refused`] where no footprint lies in the photograph, or the photograph
+    /// has fewer pixels than the scene's camera.
     pub fn new(
         camera: &Camera,
         mapping: &Mapping,

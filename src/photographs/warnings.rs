@@ -78,8 +78,8 @@ pub(super) fn rounded(errors: f64) -> Option<String> {
     })
 }
 
-/// That footprints share pixels of the photograph, so that the errors of what they show together are
-/// larger than stated.
+/// That footprints share pixels of the photograph, so that the errors of what they show together
+/// are larger than stated.
 pub(super) fn shared(times: f64) -> Option<String> {
     (times > SHARED).then(|| {
         format!(
