@@ -1625,7 +1625,7 @@ BREAKS = [
         "filter(|id| *id as usize != *out)",
         "lib",
         "lab::seldom::tests::each_shadow_is_that_of_one_thing",
-        11,
+        12,
     ),
     Break(
         "Linear light is imported exactly however footprints cut pixels",
