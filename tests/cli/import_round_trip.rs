@@ -348,6 +348,23 @@ fn agrees_with_direct(w: &Workspace, out: &str) {
     }
 }
 
+/// Pixels of the scene within 1.5 px of the glint: one for the slopes, the rest for the marks.
+fn touched() -> i32 {
+    let corner = |p: usize, k: usize| {
+        let at = [p % COARSE + k % 2, p / COARSE + k / 2].map(|n| n as f64 / COARSE as f64);
+        Camera::pixel([3.25 + 3.25 * at[0], 2.75 + 3.25 * at[1]])
+    };
+    let overlaps = |p: &usize| {
+        [70.0, 60.0].iter().enumerate().all(|(axis, first)| {
+            let ends = [0, 1, 2, 3].map(|k| corner(*p, k)[axis]);
+            let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            high > first - 2.0 && low < first + 6.0
+        })
+    };
+    (0..COARSE * COARSE).filter(overlaps).count() as i32
+}
+
 /// Photographs of every kind come back within 1 % with honest error bars, their entries near a
 /// saturated place left out; with exact marks they agree with the model, and what `joint` recovers
 /// from them lies within the bands of what it recovers from Φ without a camera.
@@ -472,7 +489,8 @@ fn a_modelled_scene_comes_back_from_the_files_of_a_camera() {
                 "{out}: χ²/dof {chi2:.4} over {n} entries, Φ off by {:.3} %",
                 100.0 * off
             );
-            assert!((6140..6144).contains(&n), "{n}");
+            // A footprint that the glint touches, or whose pixels have it beside them, is left out.
+            assert!((6144 - touched()..6144).contains(&n), "{n}");
             assert!((chi2 - 1.0).abs() < 0.05, "{out}: χ²/dof {chi2}");
             assert!(off < 0.01, "{out}: {off}");
             if error == 0.0 {

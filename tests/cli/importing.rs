@@ -3,6 +3,7 @@
 use phicam::image::{grey16_png, rgb_png};
 use phicam::matrix::{Matrix, npy};
 
+use crate::small_scene::{SMALL, TINY, altered};
 use crate::workspace::{Workspace, assert_same};
 
 /// Stored value of pixel (u, v) of photograph k: some light, more to the right and below.
@@ -453,9 +454,18 @@ fn what_does_not_fit_is_refused_and_nothing_is_written() {
         &["none.toml"],
     );
     w.refuses("import --frames in/input_*.png -o out", &["--scene"]);
+    let many = [TINY[0], SMALL[1]];
+    w.write("many.toml", altered(&many));
+    w.refuses(
+        "import --frames in/input_*.png --scene many.toml -o out",
+        &["8 photographs for 24 spots"],
+    );
     w.refuses(
         "import --frames in/input_*.png --scene small.toml -o out",
-        &["8 photographs for 24 spots"],
+        &[
+            "0.38 pixels for each of the scene's",
+            "camera.pixels = [2, 2]",
+        ],
     );
 
     w.write("in/input_5.png", photograph(5, [4, 6]));
