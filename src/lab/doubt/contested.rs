@@ -90,8 +90,8 @@ pub(super) fn contested(own: Method, judged: &Judged) -> Option<String> {
     }
     if own == Method::JointGp {
         return Some(format!(
-            "its errors and bands hold if neighbours resemble one another. What {method} assumes makes the \
-             photographs likelier, by e^{}: they may be too small by any factor. Look at its picture as well",
+            "its errors and bands hold if neighbours resemble one another, and are too small if they do not: \
+             what {method} assumes makes the photographs likelier, by e^{}. Look at its picture as well",
             figure(-ahead?, 2)
         ));
     }
