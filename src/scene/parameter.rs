@@ -82,7 +82,7 @@ impl Parameter {
     /// body where there are many.
     pub fn of_occluders(scene: &Scene) -> Vec<Self> {
         let names: Vec<&str> = of_role(Role::Occluder, &scene.surfaces)
-            .filter(|(_, s)| !is_back(s, &scene.surfaces))
+            .filter(|(id, _)| scene.front_of(*id).is_none())
             .map(|(_, s)| s.name.as_str())
             .collect();
         let bodies = if names.len() > MOST_BODIES {
@@ -122,10 +122,6 @@ const MOST_BODIES: usize = 8;
 /// The name of a surface's other side.
 fn back(name: &str) -> String {
     format!("{name} (back)")
-}
-
-fn is_back(surface: &Surface, all: &[Surface]) -> bool {
-    all.iter().any(|front| back(&front.name) == surface.name)
 }
 
 impl Scene {
