@@ -118,6 +118,9 @@ pub(super) fn averaged(
 ) -> (Matrix, Matrix, f64) {
     let apart = &mean - at_viewpoint;
     let weights: Vec<f64> = apart.row_iter().map(|r| r.norm_squared()).collect();
+    if weights.iter().all(|w| *w == 0.0) {
+        return (seen, mean, 0.0);
+    }
     let mut more = -&seen;
     for (p, mut row) in more.row_iter_mut().enumerate() {
         let sum = |side: &Matrix| {

@@ -115,13 +115,15 @@ impl Footprints {
     /// How many times as large the error of the sum of all footprints is as if each had pixels of
     /// the photograph of its own: √(Σ_q (Σ_p w_pq)²/Σ_pq w_pq²).
     pub fn shared(&self) -> f64 {
-        let mut together = BTreeMap::<u32, f64>::new();
+        let all = || self.rows.iter().flatten();
+        let last = all().map(|(q, _)| *q as usize).max();
+        let mut together = vec![0.0; last.map_or(0, |last| last + 1)];
         let mut apart = 0.0;
-        for (q, weight) in self.rows.iter().flatten() {
-            *together.entry(*q).or_default() += weight;
+        for (q, weight) in all() {
+            together[*q as usize] += weight;
             apart += weight * weight;
         }
-        (together.values().map(|w| w * w).sum::<f64>() / apart).sqrt()
+        (together.iter().map(|w| w * w).sum::<f64>() / apart).sqrt()
     }
 
     /// The photograph's pixels with their weights for a pixel of the scene; empty where its
