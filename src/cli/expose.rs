@@ -89,7 +89,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         Some(g) => glare(&scene, checked(g)?),
         None => Matrix::zeros(phi.nrows(), phi.ncols()),
     };
-    let render_error = read_stderr(&dir.join(STDERR), &scene)?;
+    let render_error = read_stderr(&dir.join(STDERR), None, &scene)?;
     let ambient = settings.ambient.unwrap_or(0.0);
     let light = Light::new(&phi, scene.laser.wavelength)?
         .with_glare(&scattered)?

@@ -7,7 +7,8 @@ use super::failure::Failure;
 use super::run_folder::{CALIBRATION, IMPORT, IMPORT_PNG, LEFT_OUT, SCENE, TAILS};
 use crate::folder::Record;
 use crate::jobs::need;
-use crate::matrix::{Matrix, npy};
+use crate::matrix::Matrix;
+use crate::matrix::npy::{self, NpyError};
 use crate::scene::{COPIES, Scene, builtins};
 use crate::store;
 
@@ -103,7 +104,7 @@ pub(super) fn refuse_damaged(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Φcam, or anything of its shape: finite, pixels × spots of `scene`; of a run, what it wrote.
+/// Anything of the shape of Φcam: finite, pixels × spots of `scene`; of a run, what it wrote.
 pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
     // By its header, before memory is taken for its numbers.
     refuse_shape(path, npy::shape(path)?, scene)?;
@@ -114,6 +115,36 @@ pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure>
 /// A finite matrix of whatever shape; of a run, what it wrote.
 pub(super) fn read_undamaged(path: &Path) -> Result<Matrix, Failure> {
     let matrix = npy::read_finite(path)?;
+    refuse_damaged(path)?;
+    Ok(matrix)
+}
+
+/// Φcam as [`read_matrix`]; what is not finite may stand where `left_out` says that an entry does
+/// not count.
+pub(super) fn read_photographs(
+    path: &Path,
+    left_out: Option<&Matrix>,
+    scene: &Scene,
+) -> Result<Matrix, Failure> {
+    refuse_shape(path, npy::shape(path)?, scene)?;
+    need::photographs(scene, 1.0)?;
+    read_counted(path, left_out)
+}
+
+/// [`read_undamaged`], of which what is left out need not be finite.
+pub(super) fn read_counted(path: &Path, left_out: Option<&Matrix>) -> Result<Matrix, Failure> {
+    let matrix = npy::read_counted(path, left_out).map_err(|e| match e {
+        NpyError::NotFinite {
+            row, column, value, ..
+        } => Failure::new(
+            format!(
+                "{} has the value {value} at row {row}, column {column}",
+                path.display()
+            ),
+            "mend it, or mark that entry in the file of --left-out: only finite numbers count",
+        ),
+        other => other.into(),
+    })?;
     refuse_damaged(path)?;
     Ok(matrix)
 }
@@ -147,13 +178,14 @@ pub(super) fn refuse_other_shape(
     Err(Failure::new(cause, cure))
 }
 
-/// Standard errors of Φcam: as [`read_matrix`], and none negative.
-pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
-    // By its header, before memory is taken for its numbers.
-    refuse_shape(path, npy::shape(path)?, scene)?;
-    let matrix = npy::read_finite(path)?;
+/// Standard errors of Φcam: as [`read_photographs`], and none negative.
+pub(super) fn read_stderr(
+    path: &Path,
+    left_out: Option<&Matrix>,
+    scene: &Scene,
+) -> Result<Matrix, Failure> {
+    let matrix = read_photographs(path, left_out, scene)?;
     refuse_negative(path, &matrix)?;
-    refuse_damaged(path)?;
     Ok(matrix)
 }
 

@@ -7,7 +7,7 @@ use super::args::RecoverArgs;
 use super::beside::{Beside, PhotographSize, left_out, mask, relative_errors};
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_undamaged, refuse_negative};
+use super::load_run::{read_counted, read_undamaged, refuse_negative};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, recovering, tell, write};
 use super::run_folder::{RunFolder, SATURATED};
@@ -43,11 +43,11 @@ pub(super) fn execute(
         .map(|file| npy::shape(file).map(|(rows, columns)| rows as f64 * columns as f64))
         .sum::<Result<_, _>>()?;
     memory::refuse("these matrices", HELD * 8.0 * entries, &[])?;
-    let phi = read_undamaged(phi_file)?;
+    let (pixels, spots) = npy::shape(phi_file)?;
     let camera = read_undamaged(camera_side)?;
     let laser = match &args.laser_side {
         Some(file) => read_undamaged(file)?,
-        None => Matrix::from_element(camera.ncols(), phi.ncols(), 1.0),
+        None => Matrix::from_element(camera.ncols(), spots, 1.0),
     };
     let elements = camera.ncols();
     let count = args.elements.unwrap_or([elements, 1]);
@@ -67,15 +67,15 @@ pub(super) fn execute(
     let of = PhotographSize {
         name: phi_file.display().to_string(),
         grid: args.pixels,
-        pixels: phi.nrows(),
-        spots: phi.ncols(),
+        pixels,
+        spots,
     };
-    if let Some([columns, rows]) = args.pixels.filter(|[c, r]| c * r != phi.nrows()) {
+    if let Some([columns, rows]) = args.pixels.filter(|[c, r]| c * r != pixels) {
         let cause = format!(
             "--pixels {columns}x{rows} are {} pixels, and {} has {}",
             columns * rows,
             of.name,
-            phi.nrows()
+            pixels
         );
         return Err(Failure::new(
             cause,
@@ -93,9 +93,10 @@ pub(super) fn execute(
         return Err(Failure::new(cause, cure));
     }
     let left_out = left_out(asked, phi_file, &of, console)?;
+    let phi = read_counted(phi_file, left_out.as_ref())?;
     let stderr = match (&args.stderr, args.noise) {
         (Some(file), _) => {
-            let stderr = read_undamaged(file)?;
+            let stderr = read_counted(file, left_out.as_ref())?;
             refuse_negative(file, &stderr)?;
             Some(stderr)
         }

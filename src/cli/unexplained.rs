@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_left_out, read_matrix, read_stderr};
+use super::load_run::{read_left_out, read_matrix, read_photographs, read_stderr};
 use super::run_folder::{PHI, STDERR};
 use crate::folder::Record;
 use crate::lab::{Unexplained, fewer, polynomials};
@@ -52,17 +52,16 @@ impl Photographs {
         let file = dir.join(STDERR);
         // Of imported photographs the noise may be unknown.
         let is_unknown = record.is_imported() && !file.exists();
-        let stderr = if is_unknown {
-            None
-        } else {
-            Some(read_stderr(&file, scene)?)
-        };
         let left_out = match left_out {
             Some(file) => Some(read_matrix(file, scene)?),
             None => read_left_out(dir, scene)?,
         };
-        let phi = read_matrix(&dir.join(PHI), scene)?;
-        Ok(Self::new(phi, stderr, left_out, (scene, polynomial)))
+        let stderr = (!is_unknown).then_some(file);
+        Self::new(
+            (&dir.join(PHI), stderr.as_deref()),
+            left_out,
+            (scene, polynomial),
+        )
     }
 
     /// Those of files of their own; without `stderr` the noise is unknown.
@@ -72,26 +71,24 @@ impl Photographs {
         scene: &Scene,
         polynomial: Option<u8>,
     ) -> Result<Self, Failure> {
-        Ok(Self::new(
-            read_matrix(phi, scene)?,
-            stderr.map(|file| read_stderr(file, scene)).transpose()?,
-            left_out.map(|file| read_matrix(file, scene)).transpose()?,
-            (scene, polynomial),
-        ))
+        let left_out = left_out.map(|file| read_matrix(file, scene)).transpose()?;
+        Self::new((phi, stderr), left_out, (scene, polynomial))
     }
 
     fn new(
-        phi: Matrix,
-        stderr: Option<Matrix>,
+        (phi, stderr): (&Path, Option<&Path>),
         left_out: Option<Matrix>,
         (scene, polynomial): (&Scene, Option<u8>),
-    ) -> Self {
-        Self {
-            phi,
-            stderr,
-            left_out,
+    ) -> Result<Self, Failure> {
+        let flags = left_out.as_ref();
+        Ok(Self {
+            phi: read_photographs(phi, flags, scene)?,
+            stderr: stderr
+                .map(|file| read_stderr(file, flags, scene))
+                .transpose()?,
             patterns: patterns(scene, polynomial),
-        }
+            left_out,
+        })
     }
 
     pub(super) fn unexplained(&self) -> Unexplained<'_> {

@@ -6,7 +6,7 @@ use super::args::ValidateArgs;
 use super::beside::{Beside, PhotographSize};
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_left_out, read_matrix, read_run, read_stderr};
+use super::load_run::{read_left_out, read_matrix, read_photographs, read_run, read_stderr};
 use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
 use super::{Outcome, settings};
@@ -84,10 +84,11 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 let cause = "nothing says of which scene the matrix is";
                 Failure::usage(cause, "give the folder of a run, or --against SCENE")
             })?;
+            let left_out = left_out(args, None, &scene)?;
             Ok(Given {
-                phi: read_matrix(phi, &scene)?,
-                stderr: read_stderr(stderr, &scene)?,
-                left_out: left_out(args, None, &scene)?,
+                phi: read_photographs(phi, left_out.as_ref(), &scene)?,
+                stderr: read_stderr(stderr, left_out.as_ref(), &scene)?,
+                left_out,
                 test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
                 run: None,
                 scene,
@@ -98,10 +99,11 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
             if !args.beside.free_scale {
                 refuse_unscaled(dir, &record)?;
             }
+            let left_out = left_out(args, read_left_out(dir, &scene)?, &scene)?;
             Ok(Given {
-                phi: read_matrix(&dir.join(PHI), &scene)?,
-                stderr: read_stderr(&noise, &scene)?,
-                left_out: left_out(args, read_left_out(dir, &scene)?, &scene)?,
+                phi: read_photographs(&dir.join(PHI), left_out.as_ref(), &scene)?,
+                stderr: read_stderr(&noise, left_out.as_ref(), &scene)?,
+                left_out,
                 test: match record.origin.plan() {
                     Some(plan) => settings::test(&args.test, plan, console)?,
                     None => {

@@ -181,7 +181,21 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
 /// # Errors
 /// As [`read`], and [`NpyError::NotFinite`] for the first NaN or infinity, rows first.
 pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
-    let matrix = read(path)?;
+    read_counted(path, None)
+}
+
+/// [`read`] with 0 in place of NaN and infinity where `left_out`, of the same shape, is not 0, and
+/// only finite values elsewhere.
+///
+/// # Errors
+/// As [`read_finite`], for the entries that count.
+pub fn read_counted(path: &Path, left_out: Option<&Matrix>) -> Result<Matrix, NpyError> {
+    let mut matrix = read(path)?;
+    for (x, flag) in matrix.iter_mut().zip(left_out.into_iter().flatten()) {
+        if *flag != 0.0 && !x.is_finite() {
+            *x = 0.0;
+        }
+    }
     finite(path, 0, matrix)
 }
 

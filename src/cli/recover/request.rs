@@ -7,7 +7,7 @@ use crate::cli::args::RecoverArgs;
 use crate::cli::beside::{Beside, PhotographSize, left_out, mask, relative_errors};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::load_run::{read_matrix, read_stderr};
+use crate::cli::load_run::{read_photographs, read_stderr};
 use crate::cli::recover_memory::{self, Errors, Strips};
 use crate::cli::recover_options::uncertainty;
 use crate::cli::recovered::recovering;
@@ -40,17 +40,17 @@ impl RecoveryRequest<'_> {
     /// From all of Φcam at once, with Picard plots.
     pub(super) fn whole(&self) -> Result<(Vec<Attempt>, Vec<Picard>), Failure> {
         let Self { args, scene, .. } = *self;
-        let phi = read_matrix(&self.phi, scene)?;
-        self.refuse_clipped()?;
         let of = PhotographSize::of_scene(scene);
         let left_out = left_out(args.left_out.as_deref(), &self.phi, &of, self.console)?;
+        let phi = read_photographs(&self.phi, left_out.as_ref(), scene)?;
+        self.refuse_clipped()?;
         let stderr = match self.errors() {
             Errors::Relative(noise) => {
                 let known =
                     relative_errors((&phi, noise), left_out.as_ref(), self.methods, self.console)?;
                 Some(known)
             }
-            Errors::File(file) => Some(read_stderr(&file, scene)?),
+            Errors::File(file) => Some(read_stderr(&file, left_out.as_ref(), scene)?),
             Errors::Unknown => {
                 self.console.say(
                     "no noise model is given (--noise or --stderr): joint weights all entries alike",

@@ -2,6 +2,7 @@
 
 use crate::lab::measures::Measures;
 use crate::matrix::Matrix;
+use crate::metrics::mtf_normalized;
 use crate::model::{Kernel, MatrixModel};
 use crate::recovery::{
     Method, Nuisance, Options, Problem, RecoveryError, Rule, Uncertainty, recover,
@@ -111,6 +112,12 @@ impl Laboratory {
             planes,
             filtered,
         }
+    }
+
+    /// Normalized modulation of the true picture; 1 of one that has none.
+    pub(super) fn own_modulation(&self) -> f64 {
+        let albedo = self.physical.albedo.as_slice();
+        mtf_normalized(albedo, albedo).unwrap_or(1.0)
     }
 
     /// Reads `taken`, with `covered` the photographs of the covered object, and `glare` the pattern

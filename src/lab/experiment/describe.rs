@@ -48,10 +48,10 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
         two(found.direct_over_signal),
         two(100.0 * (1.0 / found.direct_over_signal)),
     )];
-    said.extend(spreads().filter_map(equal));
+    said.extend(spreads().filter_map(|own| equal(own, found.own_modulation)));
     if let Some(bare) = found.by_glare.iter().find(|s| s.glare <= 0.0) {
         let published = &bare.readings[0];
-        let lost = |m: Spread| m.mean < Experiment::READABLE;
+        let lost = |m: Spread| m.mean < found.readable();
         let end = if published.mtf_normalized.is_some_and(lost) {
             ": glare is not the only cause of its failure."
         } else {
@@ -62,18 +62,19 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
             modulation(published)
         ));
     }
-    said.extend(spreads().map(|own| reach(&found.thresholds, own)));
+    said.extend(spreads().map(|own| reach(found, own)));
     said
 }
 
-/// The photographs with glare as strong as the signal: the published analysis and the best one.
-fn equal(own: &[Setting]) -> Option<String> {
+/// The photographs with glare as strong as the signal: the published analysis and the one whose
+/// modulation is the closest to the `true_one`.
+fn equal(own: &[Setting], true_one: f64) -> Option<String> {
     let off = |s: &Setting| libm::log(s.glare).abs();
     let setting = own.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-    let read = |r: &Reading| r.mtf_normalized.map(|m| m.mean);
-    let readings = setting.readings.iter().filter(|r| read(r).is_some());
-    let best = readings.max_by(|a, b| read(a).unwrap_or(0.0).total_cmp(&read(b).unwrap_or(0.0)));
-    let best = best.map_or(String::new(), |r| {
+    let off = |r: &Reading| Some((r.mtf_normalized?.mean - true_one).abs());
+    let readings = setting.readings.iter().filter_map(|r| Some((r, off(r)?)));
+    let best = readings.min_by(|a, b| a.1.total_cmp(&b.1));
+    let best = best.map_or(String::new(), |(r, _)| {
         format!(", `{}` {}", r.analysis, modulation(r))
     });
     Some(format!(
@@ -86,11 +87,15 @@ fn equal(own: &[Setting]) -> Option<String> {
     ))
 }
 
-/// What reads the board under one spread of glare, and from which exposure on.
-fn reach(thresholds: &[Threshold], own: &[Setting]) -> String {
+/// What reads the picture under one spread of glare, and from which exposure on.
+fn reach(found: &Experiment, own: &[Setting]) -> String {
+    // A board, of two values, is stretched to all of [0, 1].
+    let is_board = found.own_modulation >= 1.0;
+    let what = if is_board { "board" } else { "picture" };
+    let share = if is_board { "" } else { ", half of its own" };
     let spread = own[0].spread.as_str();
     let most = own.iter().map(|s| s.glare).fold(0.0, f64::max);
-    let limits = || thresholds.iter().filter(|t| t.spread == spread);
+    let limits = || found.thresholds.iter().filter(|t| t.spread == spread);
     let names = |keep: &dyn Fn(&Threshold) -> Option<String>| -> String {
         let names: Vec<String> = limits().filter_map(keep).collect();
         names.join(", ")
@@ -124,16 +129,16 @@ fn reach(thresholds: &[Threshold], own: &[Setting]) -> String {
     let shortest = exposures.min_by(|a, b| a.1.total_cmp(&b.1));
     let exposure = match shortest {
         Some((t, exposure)) => format!(
-            "the board is readable in single frames of at least {}, by {}.",
+            "the {what} is readable in single frames of at least {}, by {}.",
             prefixed(exposure, "s"),
             name(t)
         ),
         None => "no exposure of single frames is long enough.".to_owned(),
     };
     format!(
-        "Under {spread} glare the board is readable (normalized modulation {} and more){lists} \
+        "Under {spread} glare the {what} is readable (normalized modulation {} and more{share}){lists} \
          with glare as strong as the signal, {exposure}",
-        Experiment::READABLE
+        figure(found.readable(), 2)
     )
 }
 
@@ -213,7 +218,7 @@ fn plots(settings: &[Setting], title: &str, x: Varied) -> Vec<Plot> {
 impl Experiment {
     fn limits(&self) -> Table {
         Table {
-            caption: "Where each analysis reads the board".to_owned(),
+            caption: "Where each analysis reads the picture".to_owned(),
             place: Place::Page,
             ..Table::of(
                 &self.thresholds,

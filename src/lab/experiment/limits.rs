@@ -1,11 +1,15 @@
-//! Up to which glare, and from which exposure on, an analysis reads the board.
+//! Up to which glare, and from which exposure on, an analysis reads the picture.
 
-use super::results::{Experiment, Setting, Threshold};
+use super::results::{Setting, Threshold};
 
-/// Largest glare and shortest exposure at which each analysis reads the board, by interpolation of
-/// the mean normalized modulation over the logarithm between neighbouring settings. Both sweeps
-/// have the same spreads and analyses.
-pub(super) fn thresholds(by_glare: &[Setting], by_exposure: &[Setting]) -> Vec<Threshold> {
+/// Largest glare and shortest exposure at which each analysis reads the picture with a modulation
+/// of at least `level`, by interpolation of the mean normalized modulation over the logarithm
+/// between neighbouring settings. Both sweeps have the same spreads and analyses.
+pub(super) fn thresholds(
+    by_glare: &[Setting],
+    by_exposure: &[Setting],
+    level: f64,
+) -> Vec<Threshold> {
     let spreads = Setting::by_spread(by_glare).zip(Setting::by_spread(by_exposure));
     let of = |(glares, exposures): (&[Setting], &[Setting])| -> Vec<Threshold> {
         let one = |i: usize| {
@@ -22,8 +26,8 @@ pub(super) fn thresholds(by_glare: &[Setting], by_exposure: &[Setting]) -> Vec<T
             Threshold {
                 analysis: glares[0].readings[i].analysis.clone(),
                 spread: glares[0].spread.clone(),
-                glare: last_readable(&rising),
-                exposure: last_readable(&falling),
+                glare: last_readable(&rising, level),
+                exposure: last_readable(&falling, level),
             }
         };
         (0..glares[0].readings.len()).map(one).collect()
@@ -31,11 +35,9 @@ pub(super) fn thresholds(by_glare: &[Setting], by_exposure: &[Setting]) -> Vec<T
     spreads.flat_map(of).collect()
 }
 
-/// From the first point on, how far the line stays at or above [`Experiment::READABLE`]; `None`
-/// where it does not start there. Between points it is straight over the logarithm of x, or over x
-/// where one end is 0.
-fn last_readable(line: &[[f64; 2]]) -> Option<f64> {
-    let level = Experiment::READABLE;
+/// From the first point on, how far the line stays at or above `level`; `None` where it does not
+/// start there. Between points it is straight over the logarithm of x, or over x where one end is 0.
+fn last_readable(line: &[[f64; 2]], level: f64) -> Option<f64> {
     let [first, ..] = line else { return None };
     if first[1] < level {
         return None;
@@ -63,14 +65,14 @@ mod tests {
     fn the_last_readable_point_is_interpolated() {
         // Half way in the logarithm between 1 and 100.
         let line = [[0.0, 0.9], [1.0, 0.75], [100.0, 0.25], [1e4, 0.9]];
-        assert!((last_readable(&line).unwrap() - 10.0).abs() < 1e-12);
-        assert_eq!(last_readable(&[[0.0, 0.4], [1.0, 0.9]]), None);
-        assert_eq!(last_readable(&[[0.0, 1.0], [2.0, 0.5]]), Some(2.0));
-        assert_eq!(last_readable(&[[0.0, 0.75], [2.0, 0.25]]), Some(1.0));
+        assert!((last_readable(&line, 0.5).unwrap() - 10.0).abs() < 1e-12);
+        assert_eq!(last_readable(&[[0.0, 0.4], [1.0, 0.9]], 0.5), None);
+        assert_eq!(last_readable(&[[0.0, 1.0], [2.0, 0.5]], 0.5), Some(2.0));
+        assert_eq!(last_readable(&[[0.0, 0.75], [2.0, 0.25]], 0.5), Some(1.0));
         assert_eq!(
-            last_readable(&[[3.0, 0.75], [2.0, f64::NEG_INFINITY]]),
+            last_readable(&[[3.0, 0.75], [2.0, f64::NEG_INFINITY]], 0.5),
             Some(3.0)
         );
-        assert_eq!(last_readable(&[]), None);
+        assert_eq!(last_readable(&[], 0.5), None);
     }
 }

@@ -109,7 +109,7 @@ pub struct Threshold {
     /// How the glare is spread.
     pub spread: String,
     /// Largest glare over signal up to which the mean normalized modulation stays at or above
-    /// [`Experiment::READABLE`]; none where the least glare of the study is too much.
+    /// [`Experiment::READABLE`] of the picture's own; none where the least glare of the study is too much.
     pub glare: Option<f64>,
     /// Shortest exposure, s, from which on it stays there with glare as strong as the signal; none
     /// where no exposure of the study is enough.
@@ -129,6 +129,8 @@ pub struct Experiment {
     pub seeds: u64,
     /// Mean flux a pixel from the object, W.
     pub signal: f64,
+    /// Normalized modulation of the true picture: 1 of a board, whose elements have two values.
+    pub own_modulation: f64,
     /// Flux that enters the lens straight from the spot over the flux from the object into all
     /// pixels, mean over spots: how small the scattered fraction must be.
     pub direct_over_signal: f64,
@@ -136,7 +138,7 @@ pub struct Experiment {
     pub by_glare: Vec<Setting>,
     /// Growing exposure with glare as strong as the signal.
     pub by_exposure: Vec<Setting>,
-    /// Where each analysis reads the board.
+    /// Where each analysis reads the picture.
     pub thresholds: Vec<Threshold>,
     /// The findings in plain words, a paragraph each; one text in the JSON.
     #[serde(serialize_with = "as_one_text")]
@@ -144,10 +146,15 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Normalized modulation from which on the board counts as read. The raw one of a method whose
-    /// W + B may come near zero is no measure: it grows without bound where nothing is left of the
-    /// picture.
+    /// Normalized modulation, over that of the true picture, from which on this counts as read. The
+    /// raw one of a method whose W + B may come near zero is no measure: it grows without bound
+    /// where nothing is left of the picture.
     pub const READABLE: f64 = 0.5;
+
+    /// Normalized modulation from which on the picture counts as read.
+    pub(super) fn readable(&self) -> f64 {
+        Self::READABLE * self.own_modulation
+    }
 }
 
 impl Setting {

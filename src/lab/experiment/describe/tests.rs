@@ -45,7 +45,8 @@ fn the_findings_are_told_in_words() {
         seeds: 1,
         signal: 3e-14,
         direct_over_signal: 50.0,
-        thresholds: super::super::limits::thresholds(&by_glare, &by_glare),
+        thresholds: super::super::limits::thresholds(&by_glare, &by_glare, 0.5),
+        own_modulation: 1.0,
         by_exposure: by_glare.clone(),
         by_glare,
         words: Vec::new(),
@@ -65,4 +66,34 @@ fn the_findings_are_told_in_words() {
         (file.rows.len(), file.rows[0].len()),
         (8, file.columns.len())
     );
+}
+
+/// Of a picture of more than two values half of its own modulation is readable, and the reading
+/// that is the closest to that is the best one, not the one of the most contrast.
+#[test]
+fn a_picture_of_many_values_is_measured_by_its_own() {
+    let by_glare = vec![setting(0.0, 0.55), setting(1.0, 0.35)];
+    let own_modulation = 0.6;
+    let level = Experiment::READABLE * own_modulation;
+    let mut found = Experiment {
+        scene: "greys".to_owned(),
+        scene_hash: String::new(),
+        sensor: "ccd".to_owned(),
+        seeds: 1,
+        signal: 3e-14,
+        own_modulation,
+        direct_over_signal: 50.0,
+        thresholds: super::super::limits::thresholds(&by_glare, &by_glare, level),
+        by_exposure: by_glare.clone(),
+        by_glare,
+        words: Vec::new(),
+    };
+    found.words = words(&found, "`greys`");
+    assert!(found.words[1].ends_with("modulation of 0.35, `published` 0.35."));
+    assert!(found.words[2].ends_with("finds 0.55."));
+    let reach = &found.words[3];
+    assert!(reach.contains(
+        "the picture is readable (normalized modulation 0.30 and more, half of its own)"
+    ));
+    assert!(reach.contains("1.0 times the signal, by `published`, `joint`;"));
 }
