@@ -78,10 +78,6 @@ fn spots_that_light_the_view(scene: &Scene) -> usize {
 
 /// The point of a wall that the camera sees there in its view.
 fn wall_at(scene: &Scene, at: [f64; 2]) -> Option<(ShapeId, Interaction)> {
-    let camera = &scene.camera;
-    let sight = Ray::between(camera.position, camera.view.at(at).position)?;
-    let ray = Ray::new(sight.origin, sight.direction);
-    let hit = scene.bvh().closest(&ray, None)?;
-    let surface = &scene.surfaces[hit.shape as usize];
-    (surface.role == Role::Relay).then(|| (hit.shape, scene.bvh().point(&ray, hit)))
+    let seen = scene.seen_through(scene.camera.view.at(at).position);
+    seen.filter(|(shape, _)| scene.surfaces[*shape as usize].role == Role::Relay)
 }

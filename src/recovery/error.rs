@@ -95,7 +95,7 @@ pub enum RecoveryError {
     /// A pixel that cannot see an element, where the method divides.
     #[error(
         "the model says that pixel {pixel} receives nothing from element {element}, and {method} divides by it; \
-         leave that pixel out, or use joint, which does not divide"
+         use joint, which does not divide"
     )]
     Unseen {
         /// The method's name.

@@ -23,16 +23,19 @@ fn free(scene: &Scene, from: DVec3, on: Option<ShapeId>, to: DVec3, at: ShapeId)
 const CAMERA_PROBES: usize = 33;
 const SPOT_PROBES: usize = 9;
 
-/// A camera in front of a hidden surface with a free line to any of 33 × 33 points of it
-/// contradicts the experiment.
+/// Lines of sight a side of the view: they meet what lies between the points of a surface.
+const SIGHTS: usize = 129;
+
+/// A camera in front of a hidden surface contradicts the experiment, with a free line to any of
+/// 33 × 33 points of it or where it is met first through any of 129 × 129 points of the view.
 pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
+    let camera = scene.camera.position;
+    let seen = hidden_in_view(scene);
     for (id, surface) in scene.hidden() {
-        let sees = probes(surface, CAMERA_PROBES).into_iter().any(|p| {
-            let camera = scene.camera.position;
-            (camera - p.position).dot(p.normal) > 0.0
-                && free(scene, camera, None, p.position, id as ShapeId)
-        });
-        if sees {
+        let shape = id as ShapeId;
+        let sees =
+            |p: &Interaction| is_front(p, camera) && free(scene, camera, None, p.position, shape);
+        if seen.contains(&shape) || probes(surface, CAMERA_PROBES).iter().any(sees) {
             return Err(Fault::new(
                 keys!["surface", id],
                 format!(
@@ -51,6 +54,31 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// The hidden surfaces whose front is seen through a point of the view.
+fn hidden_in_view(scene: &Scene) -> Vec<ShapeId> {
+    let camera = scene.camera.position;
+    if !scene.hidden().any(|(_, s)| is_faced(s, camera)) {
+        return Vec::new();
+    }
+    let at = |k: usize| k as f64 / (SIGHTS - 1) as f64;
+    let points = (0..SIGHTS * SIGHTS).map(|k| [at(k % SIGHTS), at(k / SIGHTS)]);
+    let mut found = Vec::new();
+    for (shape, point) in
+        points.filter_map(|at| scene.seen_through(scene.camera.view.at(at).position))
+    {
+        let is_hidden = scene.surfaces[shape as usize].role == Role::Hidden;
+        if is_hidden && !found.contains(&shape) && is_front(&point, camera) {
+            found.push(shape);
+        }
+    }
+    found
+}
+
+/// Whether q lies in front of a point of a surface.
+fn is_front(point: &Interaction, q: DVec3) -> bool {
+    (q - point.position).dot(point.normal) > 0.0
 }
 
 /// Surfaces that light by way of a hidden one meets: wall, hidden surface, wall.
@@ -138,7 +166,7 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
             }
             continue;
         }
-        let facing = |p: &&Interaction| (target - p.position).dot(p.normal) > 0.0;
+        let facing = |p: &&Interaction| is_front(p, target);
         let mut faced = hidden
             .iter()
             .flat_map(|(id, points)| points.iter().filter(facing).map(move |p| (id, p)));
@@ -180,7 +208,7 @@ fn is_faced(surface: &Surface, q: DVec3) -> bool {
         Shape::Instance(body) => body.faces(q),
         flat => {
             let outline = flat.outline();
-            outline.iter().any(|p| (q - p.position).dot(p.normal) > 0.0)
+            outline.iter().any(|p| is_front(p, q))
         }
     }
 }
@@ -230,20 +258,14 @@ fn pixels(scene: &Scene, found: &mut Vec<Warning>) {
     let mut blocked: Vec<(ShapeId, usize)> = Vec::new();
     for pixel in 0..camera.pixels() {
         let centre = camera.footprint(pixel).at([0.5, 0.5]);
-        let Some(ray) = Ray::between(camera.position, centre) else {
+        let Some((shape, point)) = scene.seen_through(centre) else {
             continue;
         };
-        let stop = scene
-            .bvh()
-            .closest(&Ray::new(ray.origin, ray.direction), None);
-        let Some(hit) = stop else { continue };
-        let surface = &scene.surfaces[hit.shape as usize];
-        let point = scene.bvh().point(&ray, hit);
-        let front = point.normal.dot(ray.direction) < 0.0;
-        if surface.role != Role::Relay || !front {
-            match blocked.iter_mut().find(|(s, _)| *s == hit.shape) {
+        let role = scene.surfaces[shape as usize].role;
+        if role != Role::Relay || !is_front(&point, camera.position) {
+            match blocked.iter_mut().find(|(s, _)| *s == shape) {
                 Some((_, count)) => *count += 1,
-                None => blocked.push((hit.shape, 1)),
+                None => blocked.push((shape, 1)),
             }
         }
     }

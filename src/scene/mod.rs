@@ -77,7 +77,7 @@ pub use texture::{
 pub use unit::Unit;
 pub use warning::Warning;
 
-use crate::geometry::{Bvh, DAffine3};
+use crate::geometry::{Bvh, DAffine3, DVec3, Interaction, Ray, ShapeId};
 use error::{Fault, keys};
 use file::SceneFile;
 use files::{Files, Folders};
@@ -263,6 +263,14 @@ impl Scene {
     /// The surfaces' shapes, ready for ray queries.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// The surface that the camera sees first through a point of its view, and where.
+    pub(crate) fn seen_through(&self, point: DVec3) -> Option<(ShapeId, Interaction)> {
+        let sight = Ray::between(self.camera.position, point)?;
+        let ray = Ray::new(sight.origin, sight.direction);
+        let hit = self.bvh.closest(&ray, None)?;
+        Some((hit.shape, self.bvh.point(&ray, hit)))
     }
 
     /// From the scene's coordinates back to those of its file.

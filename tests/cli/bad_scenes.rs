@@ -133,6 +133,33 @@ fn a_camera_that_sees_the_hidden_face() {
     );
 }
 
+/// A sheet under plates with a gap of 0.06 in., as wide as half the distance between the points of
+/// the sheet that are looked at; lines of sight are 0.013 in. apart there.
+#[test]
+fn a_camera_that_sees_the_hidden_face_through_a_gap() {
+    let plate = |[from, to]: [f64; 2]| {
+        format!(
+            "[[surface]]\nname = \"plate{to}\"\nrole = \"occluder\"\nmaterial = {{ lambertian = 0.0 }}\n\
+             rectangle = {{ corner = [{from}, -50, 12], u = [{}, 0, 0], v = [0, 100, 0] }}\n",
+            to - from
+        )
+    };
+    let object = "corner = [3, 11.350951966438567, 4.149048033561433], u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619]";
+    let sheet = "corner = [3, 2, 10], u = [4, 0, 0], v = [0, 4, 0]";
+    let camera = "[camera]\nposition = [-20.0, 10.0, 15.0]";
+    let above = "[camera]\nposition = [5.0, 4.0, 20.0]";
+    let scene = altered(TINY.iter().chain([&(camera, above), &(object, sheet)]));
+    let workspace = Workspace::new();
+    let gaps = [("shut", 5.024), ("open", 5.072)];
+    for (name, end) in gaps {
+        let plates = [plate([-50.0, 5.024]), plate([end, 50.0])].concat();
+        workspace.write(&format!("{name}.toml"), format!("{scene}\n{plates}"));
+    }
+    let words = ["camera sees the front of hidden surface `object`"];
+    workspace.refuses("scene check open.toml", &words);
+    assert_eq!(workspace.phicam("scene check shut.toml").code, 0);
+}
+
 #[test]
 fn a_scene_that_is_not_there() {
     let workspace = Workspace::new();

@@ -150,6 +150,10 @@ fn what_is_not_the_surface_s_light_is_left_out_or_estimated() {
     assert!(found < 1e-3, "{found}");
     assert!(ended.stderr.contains("are left out"), "{}", ended.account());
     assert!(rmse("--phi spoilt.npy").1 > 0.1);
+    let holes = model.zip_map(&flags, |x, flag| x / (1.0 - flag));
+    npy::write(&workspace.path("holes.npy"), &holes).unwrap();
+    let (_, without) = rmse("--phi holes.npy --left-out flags.npy");
+    assert!(without < 1e-3, "{without}");
 
     // Pixel p of the 8 × 8 is column p % 8: x² and y, different in each frame.
     let lit = model.map_with_location(|p, l, x| {

@@ -326,8 +326,8 @@ fn a_drifting_laser_is_told_of() {
     }
 }
 
-/// Zero light from both, and entries that are all flagged, are no evidence.
-/// Entries that are wrong refute a right model, unless they do not count.
+/// Entries that are wrong refute a right model, unless they do not count: then they need not even be
+/// numbers.
 #[test]
 fn what_is_left_out_does_not_count() {
     let workspace = Workspace::with_scenes();
@@ -349,8 +349,20 @@ fn what_is_left_out_does_not_count() {
     let found: serde_json::Value = serde_json::from_str(&ended.exits(0).stdout).unwrap();
     let counted = files[2].1.iter().filter(|x| **x == 0.0).count();
     assert_eq!(found["entries"], counted, "{found}");
+    for (name, matrix) in &files[..2] {
+        let holes = matrix.zip_map(
+            &files[2].1,
+            |x, flag| if flag == 0.0 { x } else { f64::NAN },
+        );
+        phicam::matrix::npy::write(&workspace.path(name), &holes).unwrap();
+    }
+    workspace.refuses(line, &["phi.npy has the value NaN", "--left-out"]);
+    let ended = workspace.phicam(&format!("{line} --left-out flags.npy"));
+    let again: serde_json::Value = serde_json::from_str(&ended.exits(0).stdout).unwrap();
+    assert_eq!(again, found);
 }
 
+/// Zero light from both, and entries that are all flagged, are no evidence.
 #[test]
 fn nothing_is_no_evidence() {
     let workspace = Workspace::with_scenes();
