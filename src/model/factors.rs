@@ -31,9 +31,10 @@ use own::{Own, chance, moved, stacked};
 pub struct Factors {
     /// A_j.
     pub terms: Terms,
-    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, at least
-    /// two standard deviations of what viewpoints leave to chance where camera and laser both see a
-    /// part of a cell, and what another division of footprints and spots does.
+    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, past
+    /// obstacles at least half of what the one before did and two standard deviations of what
+    /// viewpoints leave to chance where camera and laser both see a part of a cell; and what another
+    /// division of footprints and spots does.
     pub change: f64,
     /// Cells of the hidden surfaces in the last step.
     pub cells: usize,
@@ -86,7 +87,9 @@ impl ElementGrid {
 /// over the areas of both ends; 1 where no light arrives in any case.
 pub(super) type Shares = [Matrix; 2];
 
-/// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
+/// Halvings of an element at first and at most: 2 × 2 cells, and 32 × 32, all of which are held with
+/// all pixels.
+const FIRST: u32 = 1;
 const MOST_HALVINGS: u32 = 5;
 /// Relative change below which what is extrapolated is fine enough.
 const SMOOTH_TARGET: f64 = 1e-6;
@@ -143,7 +146,7 @@ pub(super) fn settled<'a>(
             .for_each(|(all, own)| all.extend(own));
         of
     };
-    let mut halvings = 1;
+    let mut halvings = FIRST;
     let mut of = cut_in(halvings);
     let count = |of: &[Vec<HiddenCell>]| of.iter().map(Vec::len).sum::<usize>();
     let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
@@ -178,14 +181,20 @@ pub(super) fn settled<'a>(
     let other = walls.other.map(|(_, other)| other);
     let left = other.as_ref().map_or(0.0, |other| moved(other, &rough));
     let occlusion = &past.occlusion;
+    // Past an edge a halving may change little by luck; the one before then tells the size.
+    let mut earlier = if is_smooth {
+        0.0
+    } else {
+        moved(&past.all(&cut_in(FIRST - 1))?, &rough)
+    };
     let mut before: Option<Vec<Own>> = None;
     loop {
         let exhausted = 4.0 * (count(&of) * occlusion.walls) as f64 > occlusion.most_pairs();
         halvings += 1;
         of = cut_in(halvings);
         let next = past.all(&of)?;
-        let change =
-            moved(before.as_ref().unwrap_or(&rough), &next).max(DEVIATIONS * chance(&next));
+        let last = moved(before.as_ref().unwrap_or(&rough), &next);
+        let change = last.max(DEVIATIONS * chance(&next));
         if exhausted || halvings == MOST_HALVINGS || change < target {
             return Ok(Settled {
                 past,
@@ -194,10 +203,10 @@ pub(super) fn settled<'a>(
                 rough,
                 other,
                 before,
-                change: change + left,
+                change: change.max(0.5 * earlier) + left,
             });
         }
-        before = Some(next);
+        (earlier, before) = (last, Some(next));
     }
 }
 

@@ -217,8 +217,9 @@ fn pixel_and_spot_see_the_same_part_of_a_cell() {
 /// light was off by up to 5 %, and up to a hundred times as much as the last halving changed.
 #[test]
 fn pixel_and_spot_see_the_same_part_of_an_element() {
-    for k in 0..12 {
-        let (scene, truth) = seen_up_to(2.0 + 0.51 * (k as f64 + 0.7) / 12.0);
+    const EDGES: usize = 48;
+    for k in 0..EDGES {
+        let (scene, truth) = seen_up_to(2.0 + 0.51 * (k as f64 + 0.7) / EDGES as f64);
         let (phi, change) = by_elements_within(&scene);
         let error = (phi[0] / truth - 1.0).abs();
         assert!(error < 5e-4, "{k}: {error:.1e}");
