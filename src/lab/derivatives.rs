@@ -1,6 +1,8 @@
 //! What may be off in a scene, and what each deviation does to the model: derivatives by central
 //! differences of the quadrature; past flat figures in closed form.
 
+use std::sync::OnceLock;
+
 use super::misplaced::{ALL, Misplaced, Size};
 use super::score::Parameter;
 use super::shaded::{Shaded, albedo_of};
@@ -20,6 +22,8 @@ pub(super) struct SceneDerivatives<'a> {
     step: f64,
     kinds: Vec<Kind>,
     shaded: Shaded,
+    /// What `nodes` give of the scene as it is, with nothing in the way.
+    here: OnceLock<Option<Matrix>>,
     /// By index as for [`Self::of`].
     pub(super) parameters: Vec<Parameter>,
 }
@@ -81,6 +85,7 @@ impl<'a> SceneDerivatives<'a> {
                 (Some(_), Kernel::Physical) => Shaded::new(scene).unwrap_or_default(),
                 _ => Shaded::default(),
             },
+            here: OnceLock::new(),
             parameters: vec![scale],
         };
         let reflecting = scene.relays().chain(scene.hidden());
@@ -137,44 +142,77 @@ impl<'a> SceneDerivatives<'a> {
         }
     }
 
+    /// Φ(θ) − Φ(0) and ∂Φ/∂θ at θ, W and W per unit. None past shadows that move, and where the
+    /// scene allows no such deviation.
+    pub(super) fn moved(&self, index: usize, size: f64) -> Option<[Matrix; 2]> {
+        let kind = self.kinds[index];
+        if let Kind::Scale = kind {
+            let slope = self.phi * 0.01;
+            return Some([&slope * size, slope]);
+        }
+        if self.shaded.is_known() {
+            return None;
+        }
+        let here = self.here.get_or_init(|| self.integrated(self.scene));
+        let change = self.deviating(kind, size)? - here.as_ref()?;
+        Some([change, self.slope(kind, size)?].map(|free| self.seen(free)))
+    }
+
     fn difference(&self, kind: Kind) -> Option<Matrix> {
-        let model = |scene: Scene| integrated(&scene, self.kernel, self.nodes).ok();
-        let free = match kind {
-            Kind::Scale => return Some(self.phi * 0.01),
-            Kind::Shift => return None,
-            Kind::Albedo(index) => {
-                let at = |sign: f64| {
-                    model(
-                        self.scene
-                            .with_scaled_albedo(index, 1.0 + sign * 0.01 * PERCENT),
-                    )
-                };
-                (at(1.0)? - at(-1.0)?) / (2.0 * PERCENT)
-            }
+        match kind {
+            Kind::Scale => Some(self.phi * 0.01),
             // What it does to shadows is not known.
-            Kind::Misplaced(_) if self.shaded.is_known() => return None,
-            Kind::Misplaced(what) => {
-                let step = match what.size {
-                    Size::Percent => PERCENT,
-                    Size::Angle => (self.step / lever(self.scene)).to_degrees(),
-                    Size::Length | Size::Random | Size::Positive => self.step,
-                };
-                let at = |size: f64| model(what.apply(self.scene, size)?);
-                let here = || integrated(self.scene, self.kernel, self.nodes).ok();
-                match (what.size, at(step), at(-step)) {
-                    (Size::Positive, Some(one), _) => (at(2.0 * step)? - one) / step,
-                    (_, Some(more), Some(less)) => (more - less) / (2.0 * step),
-                    // At the edge of what the scene allows, from one side.
-                    (_, Some(more), None) => (more - here()?) / step,
-                    (_, None, Some(less)) => (here()? - less) / step,
-                    (_, None, None) => return None,
-                }
-            }
-        };
-        Some(match self.visible {
+            Kind::Misplaced(_) if self.shaded.is_known() => None,
+            _ => Some(self.seen(self.slope(kind, 0.0)?)),
+        }
+    }
+
+    /// What is visible of light with nothing in the way.
+    fn seen(&self, free: Matrix) -> Matrix {
+        match self.visible {
             None => free,
             Some(share) => free.component_mul(share),
-        })
+        }
+    }
+
+    fn integrated(&self, scene: &Scene) -> Option<Matrix> {
+        integrated(scene, self.kernel, self.nodes).ok()
+    }
+
+    /// Φ of a scene that deviates by so much, with nothing in the way.
+    fn deviating(&self, kind: Kind, size: f64) -> Option<Matrix> {
+        match kind {
+            Kind::Albedo(_) if size <= -100.0 => None,
+            Kind::Albedo(index) => {
+                let factor = 1.0 + 0.01 * size;
+                self.integrated(&self.scene.with_scaled_albedo(index, factor))
+            }
+            Kind::Misplaced(_) if size == 0.0 => self.integrated(self.scene),
+            Kind::Misplaced(what) => self.integrated(&what.apply(self.scene, size)?),
+            Kind::Scale | Kind::Shift => None,
+        }
+    }
+
+    /// ∂Φ/∂θ at a deviation, with nothing in the way.
+    fn slope(&self, kind: Kind, size: f64) -> Option<Matrix> {
+        let step = match kind {
+            Kind::Misplaced(what) => match what.size {
+                Size::Percent => PERCENT,
+                Size::Angle => (self.step / lever(self.scene)).to_degrees(),
+                Size::Length | Size::Random | Size::Positive => self.step,
+            },
+            Kind::Scale | Kind::Albedo(_) | Kind::Shift => PERCENT,
+        };
+        let at = |steps: f64| self.deviating(kind, size + steps * step);
+        let is_positive = matches!(kind, Kind::Misplaced(what) if what.size == Size::Positive);
+        match (at(1.0), at(-1.0)) {
+            (Some(one), _) if is_positive => Some((at(2.0)? - one) / step),
+            (Some(more), Some(less)) => Some((more - less) / (2.0 * step)),
+            // At the edge of what the scene allows, from one side.
+            (Some(more), None) => Some((more - at(0.0)?) / step),
+            (None, Some(less)) => Some((at(0.0)? - less) / step),
+            (None, None) => None,
+        }
     }
 }
 

@@ -100,6 +100,14 @@ impl<'a> Residual<'a> {
         self.evidence.traced[at] - self.evidence.model[at]
     }
 
+    /// Σ w r² of the columns.
+    pub(super) fn squares(&self, columns: &Range<usize>) -> f64 {
+        let rows = self.weights.nrows();
+        let entries = columns.start * rows..columns.end * rows;
+        let square = |at: usize| self.weights[at] * self.difference(at).powi(2);
+        entries.map(square).sum()
+    }
+
     /// Fits θ·d in the columns `columns`; `None` where that changes nothing.
     pub(super) fn fit(&self, d: &Matrix, columns: &Range<usize>) -> Option<Fit> {
         let rows = d.nrows();
@@ -218,7 +226,8 @@ pub(super) struct Fit {
     pub value: f64,
     pub stderr: f64,
     pub bias: f64,
-    freedom: f64,
+    /// Degrees of freedom of the error.
+    pub freedom: f64,
 }
 
 impl Fit {

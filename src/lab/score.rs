@@ -5,6 +5,12 @@
 //!
 //! Where other light or the scale was fitted first ([`Eliminated`](super::eliminated::Eliminated)),
 //! d is what that leaves of ∂model/∂θ.
+//!
+//! The likeliest causes of a difference are then followed as far as the model bends.
+
+mod deviation;
+mod followed;
+mod likely;
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -15,69 +21,8 @@ use super::evidence::{Evidence, Test};
 use super::residual::{Residual, Weights};
 use crate::matrix::Matrix;
 use crate::num::statistics::{normal_two_sided, sidak_p, sidak_threshold};
-
-/// A parameter of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    /// What may be off.
-    pub name: String,
-    /// Unit of its deviation.
-    pub unit: String,
-    /// The largest deviation that a scene can have, if there is one: what is fitted beyond is no
-    /// cause.
-    pub reach: Option<f64>,
-    /// What else has the same derivative up to a factor: its name, and its deviation per deviation
-    /// of this parameter, in the same unit.
-    pub same: Vec<(String, f64)>,
-    /// Its name for one spot, if every spot has its own such parameter, whose derivative is its
-    /// column of this one's.
-    pub each_spot: Option<String>,
-}
-
-/// A model's parameters and derivatives.
-pub struct Derivatives<'a> {
-    /// The parameters.
-    pub parameters: &'a [Parameter],
-    /// ∂Φ/∂θ of a parameter, pixels × spots, W per unit; `None` where the scene does not allow it.
-    pub of: &'a (dyn Fn(usize) -> Option<Matrix> + Sync),
-}
-
-/// A parameter fitted alone.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Deviation {
-    /// What was fitted.
-    pub name: String,
-    /// Unit of the numbers.
-    pub unit: String,
-    /// Scene less model.
-    pub value: f64,
-    /// Standard error of that.
-    pub stderr: f64,
-    /// What the model's own bound may add to or take off it.
-    pub bias: f64,
-    /// Standard normal deviate of value/stderr, the bias taken off.
-    pub z: f64,
-    /// Probability of one as large among its family (Šidák).
-    pub p: f64,
-    /// Smallest deviation that the score test rejects 95 times in 100.
-    pub detectable: f64,
-    /// The largest that a scene can have, if there is one.
-    #[serde(default)]
-    pub reach: Option<f64>,
-    /// χ²/dof that remains with it fitted.
-    pub chi2_per_dof: f64,
-    /// What cannot be told from it by any light, with its deviation for this one.
-    pub same: Vec<(String, f64)>,
-    /// The spot, of a parameter of one spot.
-    pub spot: Option<usize>,
-}
-
-impl Deviation {
-    /// Whether a scene can have it of this size.
-    pub(super) fn is_within_reach(&self, size: f64) -> bool {
-        self.reach.is_none_or(|reach| size.abs() <= reach)
-    }
-}
+pub use deviation::{Derivatives, Deviation, Parameter};
+use likely::{Causes, Remaining, whole};
 
 /// All parameters, each fitted alone.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -89,8 +34,9 @@ pub struct Score {
     /// Parameters of single spots.
     pub spots: Vec<Deviation>,
     /// The most likely cause first: of the parameters beyond their limits, and within what a scene
-    /// can have, the one that leaves the least χ². Then all that explain the difference as well,
-    /// after whose fit the first is not missed at 1 %.
+    /// can have, the one that leaves the least χ², the best few followed to where they leave it.
+    /// Then all that explain the difference as well, after whose fit the first is not missed at
+    /// 1 %.
     pub likely: Vec<Deviation>,
     /// Parameters that change nothing or that the scene does not allow.
     pub untested: Vec<String>,
@@ -117,11 +63,6 @@ impl Score {
 
 /// Share of the significance level of each family: the scene's parameters, and the spots'.
 const FAMILIES: f64 = 0.5;
-/// Level at which a cause is told from the most likely one.
-const TOLD_APART: f64 = 0.01;
-
-/// χ²/dof of the entries after a deviation: of the model `model + θ·d` in the columns `columns`.
-pub(super) type Remaining<'a> = &'a (dyn Fn(f64, &Matrix, &Range<usize>) -> f64 + Sync);
 
 /// Fits every parameter, at `significance` for all together.
 pub(super) fn score(
@@ -161,6 +102,7 @@ pub(super) fn score(
                 chi2_per_dof: remaining(fit.value, &d, &columns),
                 same: parameter.same.clone(),
                 spot,
+                is_followed: false,
             })
         };
         match fit(None, found.limits[0], parameters.len(), &parameter.name) {
@@ -172,45 +114,17 @@ pub(super) fn score(
             found.spots.extend(own);
         }
     }
-    found.likely = likely(&found, &residual, parameters, &of);
+    let causes = Causes {
+        residual: &residual,
+        test,
+        derivatives,
+        of: &of,
+        remaining,
+    };
+    let all: Vec<&Deviation> = found.all().collect();
+    let beyond = all.iter().copied().filter(|d| found.is_beyond(d)).collect();
+    found.likely = causes.likely(&all, beyond);
     found
-}
-
-/// The most likely cause, of those beyond their limit the one that leaves the least χ², and those
-/// that explain the difference as well.
-fn likely(
-    found: &Score,
-    residual: &Residual<'_>,
-    parameters: &[Parameter],
-    derivatives: &[Option<Matrix>],
-) -> Vec<Deviation> {
-    let of = |d: &Deviation| {
-        parameters.iter().position(|p| match d.spot {
-            None => p.name == d.name,
-            Some(_) => p.each_spot.as_ref() == Some(&d.name),
-        })
-    };
-    let can_be = |d: &&Deviation| d.is_within_reach(d.value);
-    let all = || found.all().filter(can_be);
-    let beyond = |d: &&Deviation| found.is_beyond(d);
-    let least = |a: &&Deviation, b: &&Deviation| a.chi2_per_dof.total_cmp(&b.chi2_per_dof);
-    let Some(best) = all().filter(beyond).min_by(least) else {
-        return Vec::new();
-    };
-    let derivative =
-        |d: &Deviation| whole(&residual.evidence, derivatives[of(d)?].as_ref()?, d.spot);
-    let Some(first) = derivative(best) else {
-        return vec![best.clone()];
-    };
-    let limit = sidak_threshold(TOLD_APART, all().count() as u64);
-    let as_good = |other: &&Deviation| {
-        let same = other.name == best.name && other.spot == best.spot;
-        let missed = |own: Matrix| residual.missed(&first, &own);
-        !same && derivative(other).is_some_and(|own| missed(own).abs() <= limit)
-    };
-    let mut rest: Vec<&Deviation> = all().filter(as_good).collect();
-    rest.sort_by(least);
-    std::iter::once(best).chain(rest).cloned().collect()
 }
 
 /// What is fitted of a derivative, and the spots where it is not 0; none if what was fitted first
@@ -224,26 +138,5 @@ fn left_of<'a>(
     match evidence.eliminated {
         None => Some((Cow::Borrowed(d), spot.map_or(all, |l| l..l + 1))),
         Some(_) => Some((Cow::Owned(whole(evidence, d, spot)?), all)),
-    }
-}
-
-/// The same with all spots.
-fn whole(evidence: &Evidence<'_>, d: &Matrix, spot: Option<usize>) -> Option<Matrix> {
-    let own = of_spot(d, spot);
-    match evidence.eliminated {
-        None => Some(own),
-        Some(terms) => terms.left_of(&own),
-    }
-}
-
-/// The derivative by a parameter of one spot.
-fn of_spot(d: &Matrix, spot: Option<usize>) -> Matrix {
-    match spot {
-        None => d.clone(),
-        Some(l) => {
-            let mut own = Matrix::zeros(d.nrows(), d.ncols());
-            own.set_column(l, &d.column(l));
-            own
-        }
     }
 }

@@ -180,6 +180,7 @@ pub fn validate(
     let derivatives = Derivatives {
         parameters: &off.parameters,
         of: &|index| off.of(index),
+        moved: &|index, size| off.moved(index, size),
     };
     // Below, a variance has no variance itself, and no fit a known error.
     let derivatives = (test.known.replicates.is_none_or(|n| n >= FEWEST)).then_some(&derivatives);

@@ -206,6 +206,7 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
     let derivatives = Derivatives {
         parameters: &[parameter],
         of: &|_| Some(d.clone()),
+        moved: &|_, _| None,
     };
     let adjusted = Evidence {
         traced: &left.phi,

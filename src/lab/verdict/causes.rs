@@ -8,6 +8,9 @@ use crate::num::statistics::chi_square_sf;
 /// A parameter that leaves more than this part of the excess of χ² over its mean, and more than
 /// chance, is no cause of it.
 const UNEXPLAINED: f64 = 0.1;
+/// Standard errors within which a model's bend does not matter: of a deviation so large a tenth of
+/// its size is one.
+const STRAIGHT: f64 = 10.0;
 /// Causes that are named beside the most likely one.
 const NAMED: usize = 3;
 
@@ -21,9 +24,14 @@ impl Score {
         let left = first.chi2_per_dof - 1.0;
         let explains = chi_square_sf(first.chi2_per_dof * dof, dof) >= level;
         if !explains && left > UNEXPLAINED * (chi2_per_dof - 1.0) {
+            let only = if first.is_followed {
+                ""
+            } else {
+                " as far as the model is straight (one that is not small is not seen so)"
+            };
             return format!(
-                "no single parameter of the scene explains it: the best, {}, leaves χ²/dof {}. Several at \
-                 once may, or another order, orientation or unit of the photographs (`phicam locate` \
+                "no single parameter of the scene explains it{only}: the best, {}, leaves χ²/dof {}. Several \
+                 at once may, or another order, orientation or unit of the photographs (`phicam locate` \
                  tests the order)",
                 first.label(),
                 significant(first.chi2_per_dof, 4)
@@ -52,11 +60,15 @@ impl Score {
             };
             format!("; not told from {}{more}", named.join(", "))
         };
-        let more = if explains {
-            ""
-        } else {
-            ", which is more than chance: it is not small against the scene, and its value a first \
-             step, or something else is off too"
+        let more = match (explains, first.is_followed) {
+            (true, true) => "",
+            (true, false) if first.z.abs() < STRAIGHT => "",
+            (true, false) => "; its value is a first step, as if the model were straight",
+            (false, true) => ", which is more than chance: something else is off too",
+            (false, false) => {
+                ", which is more than chance: it is not small against the scene, and its value a first \
+                 step, or something else is off too"
+            }
         };
         format!(
             "{}{same}{as_good}; χ²/dof {} with it fitted{more}",

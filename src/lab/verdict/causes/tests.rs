@@ -14,6 +14,7 @@ fn deviation(chi2_per_dof: f64) -> Deviation {
         chi2_per_dof,
         same: Vec::new(),
         spot: None,
+        is_followed: true,
     }
 }
 

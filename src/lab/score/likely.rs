@@ -1,0 +1,169 @@
+//! Which deviations explain a difference.
+
+use std::ops::Range;
+
+use super::deviation::{Derivatives, Deviation};
+use super::followed::followed;
+use crate::lab::eliminated::Eliminated;
+use crate::lab::evidence::{Evidence, Test};
+use crate::lab::residual::{Residual, Weights};
+use crate::matrix::Matrix;
+use crate::num::statistics::sidak_threshold;
+
+/// Causes that are followed.
+const FOLLOWED: usize = 4;
+/// Level at which a cause is told from the most likely one.
+const TOLD_APART: f64 = 0.01;
+
+/// χ²/dof of the entries after a deviation: of the model `model + θ·d` in the columns `columns`.
+pub(in crate::lab) type Remaining<'a> = &'a (dyn Fn(f64, &Matrix, &Range<usize>) -> f64 + Sync);
+
+/// What may explain a difference.
+pub(super) struct Causes<'a> {
+    pub residual: &'a Residual<'a>,
+    pub test: Test,
+    pub derivatives: &'a Derivatives<'a>,
+    /// ∂Φ/∂θ of each parameter.
+    pub of: &'a [Option<Matrix>],
+    pub remaining: Remaining<'a>,
+}
+
+/// A deviation with what it changes in the model, and the derivative there.
+struct Cause {
+    deviation: Deviation,
+    change: Matrix,
+    derivative: Matrix,
+}
+
+impl Causes<'_> {
+    /// The most likely cause, of those `beyond` their limit the one that leaves the least χ², and
+    /// those of `all` that explain the difference as well.
+    pub(super) fn likely(&self, all: &[&Deviation], mut beyond: Vec<&Deviation>) -> Vec<Deviation> {
+        let least = |a: &&Deviation, b: &&Deviation| a.chi2_per_dof.total_cmp(&b.chi2_per_dof);
+        let all = || all.iter().copied().filter(|d| d.is_within_reach(d.value));
+        // A first step may go too far.
+        beyond.sort_by(least);
+        let causes = beyond.iter().take(FOLLOWED).filter_map(|d| self.cause(d));
+        let mut causes: Vec<Cause> = causes.collect();
+        let chi2 = |cause: &Cause| cause.deviation.chi2_per_dof;
+        causes.sort_by(|a, b| chi2(a).total_cmp(&chi2(b)));
+        let Some((best, others)) = causes.split_first() else {
+            return Vec::new();
+        };
+        let limit = sidak_threshold(TOLD_APART, all().count() as u64);
+        let is_as_good = |other: &Cause| self.missed(best, other).abs() <= limit;
+        let is = |d: &Deviation, cause: &Cause| {
+            let own = &cause.deviation;
+            d.name == own.name && d.spot == own.spot
+        };
+        let rest = all().filter(|d| !causes.iter().any(|cause| is(d, cause)));
+        let rest = rest.filter_map(|d| self.straight(d));
+        let rest = rest.filter(is_as_good).map(|cause| cause.deviation);
+        let followed = others.iter().filter(|other| is_as_good(other));
+        let followed = followed.map(|other| other.deviation.clone());
+        let mut rest: Vec<Deviation> = rest.chain(followed).collect();
+        rest.sort_by(|a, b| least(&a, &b));
+        std::iter::once(best.deviation.clone())
+            .chain(rest)
+            .collect()
+    }
+
+    /// z of the best cause after another was fitted, of what that does not change.
+    fn missed(&self, best: &Cause, other: &Cause) -> f64 {
+        if !other.deviation.is_followed {
+            return self.residual.missed(&best.change, &other.derivative);
+        }
+        let evidence = self.residual.evidence;
+        let model = evidence.model + &other.change;
+        let evidence = Evidence {
+            model: &model,
+            ..evidence
+        };
+        let residual = Residual::new(evidence, self.test, Weights::Smoothed);
+        residual.missed(&(&best.change - &other.change), &other.derivative)
+    }
+
+    /// A deviation as far as it can be followed, if a scene can have it.
+    fn cause(&self, d: &Deviation) -> Option<Cause> {
+        let straight = || {
+            let possible = d.is_within_reach(d.value).then_some(d)?;
+            self.straight(possible)
+        };
+        self.bent(d).or_else(straight)
+    }
+
+    /// Its first step.
+    fn straight(&self, d: &Deviation) -> Option<Cause> {
+        let derivative = self.of[self.index(d)?].as_ref()?;
+        let derivative = whole(&self.residual.evidence, derivative, d.spot)?;
+        Some(Cause {
+            change: &derivative * d.value,
+            derivative,
+            deviation: d.clone(),
+        })
+    }
+
+    /// The deviation where it leaves the least. A free scale would change with it.
+    fn bent(&self, d: &Deviation) -> Option<Cause> {
+        let evidence = self.residual.evidence;
+        if evidence.eliminated.is_some_and(Eliminated::is_scale_free) {
+            return None;
+        }
+        let index = self.index(d)?;
+        let all = 0..evidence.model.ncols();
+        let columns = match (evidence.eliminated, d.spot) {
+            (None, Some(l)) => l..l + 1,
+            _ => all,
+        };
+        let moved = |size: f64| {
+            let of = |m: Matrix| whole(&evidence, &m, d.spot);
+            let inside = d.is_within_reach(size).then_some(size)?;
+            let [change, derivative] = (self.derivatives.moved)(index, inside)?;
+            Some([of(change)?, of(derivative)?])
+        };
+        let found = followed((evidence, self.test), &columns, d.value, &moved)?;
+        let deviation = Deviation {
+            value: found.fit.value,
+            stderr: found.fit.stderr,
+            bias: found.fit.bias,
+            chi2_per_dof: (self.remaining)(1.0, &found.change, &columns),
+            is_followed: true,
+            ..d.clone()
+        };
+        Some(Cause {
+            deviation,
+            change: found.change,
+            derivative: found.derivative,
+        })
+    }
+
+    /// Its parameter.
+    fn index(&self, d: &Deviation) -> Option<usize> {
+        let mut all = self.derivatives.parameters.iter();
+        all.position(|p| match d.spot {
+            None => p.name == d.name,
+            Some(_) => p.each_spot.as_ref() == Some(&d.name),
+        })
+    }
+}
+
+/// The same with all spots.
+pub(super) fn whole(evidence: &Evidence<'_>, d: &Matrix, spot: Option<usize>) -> Option<Matrix> {
+    let own = of_spot(d, spot);
+    match evidence.eliminated {
+        None => Some(own),
+        Some(terms) => terms.left_of(&own),
+    }
+}
+
+/// The derivative by a parameter of one spot.
+fn of_spot(d: &Matrix, spot: Option<usize>) -> Matrix {
+    match spot {
+        None => d.clone(),
+        Some(l) => {
+            let mut own = Matrix::zeros(d.nrows(), d.ncols());
+            own.set_column(l, &d.column(l));
+            own
+        }
+    }
+}
