@@ -208,6 +208,29 @@ pub(super) fn relative_errors(
     Ok(stderr)
 }
 
+/// Tells of entries that count and hold light, and whose standard errors are 0.
+pub(super) fn warn_of_exact(
+    (phi, stderr): (&Matrix, &Matrix),
+    left_out: Option<&Matrix>,
+    console: Console,
+) {
+    let counts = |at: usize| left_out.is_none_or(|flags| flags[at] == 0.0);
+    let exact = |at: &usize| stderr[*at] == 0.0 && phi[*at] != 0.0 && counts(*at);
+    let all = phi.len().min(stderr.len());
+    let (exact, known) = (
+        (0..all).filter(exact).count(),
+        stderr.iter().any(|s| *s > 0.0),
+    );
+    if exact > 0 && known {
+        console.say(format!(
+            "warning: {exact} of {} entries hold light and have a standard error of 0: they count for the picture like \
+             others of their pixel and spot, and no test of it sees them; leave them out (--left-out), or give their \
+             errors",
+            phi.len()
+        ));
+    }
+}
+
 /// Refuses deviations without a meaning.
 pub(super) fn refuse_meaningless(args: &BesideArgs) -> Result<(), Failure> {
     let given = [

@@ -107,6 +107,17 @@ use failure::{Codes, Failure, Outcome};
 
 use crate::store::harmless;
 
+/// Refuses other values of a scene's keys for a command that names no scene.
+fn refuse_undefinable(command: &Command, define: &[(String, String)]) -> Result<(), Failure> {
+    let mut defined = define.iter().map(|(key, _)| key);
+    let Some(key) = defined.find(|key| !command.defines(key)) else {
+        return Ok(());
+    };
+    let cause = format!("-D {key} changes a scene, and nothing here names one");
+    let cure = "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against, `expose` -D sensor.KEY=VALUE";
+    Err(Failure::usage(cause, cure))
+}
+
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
     interrupt::outlive_size_limits();
@@ -122,15 +133,8 @@ pub fn main() -> ExitCode {
         also_read: &args.also_read,
         define: &args.define,
     };
-    let mut defined = args.define.iter().map(|(key, _)| key);
-    if let Some(key) = defined.find(|key| !args.command.defines(key)) {
-        let cause = format!("-D {key} changes a scene, and nothing here names one");
-        let cure = "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against, `expose` -D sensor.KEY=VALUE";
-        let failure = Failure::usage(cause, cure);
-        failure.report();
-        return ExitCode::from(failure.code(args.command.codes()));
-    }
-    if let Err(failure) = process::start_threads() {
+    let ready = refuse_undefinable(&args.command, &args.define);
+    if let Err(failure) = ready.and_then(|()| process::start_threads()) {
         failure.report();
         return ExitCode::from(failure.code(args.command.codes()));
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Outcome;
 use super::args::RecoverArgs;
-use super::beside::{Beside, PhotographSize, left_out, mask, relative_errors};
+use super::beside::{Beside, PhotographSize, left_out, mask, relative_errors, warn_of_exact};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_counted, read_undamaged, refuse_negative};
@@ -98,6 +98,7 @@ pub(super) fn execute(
         (Some(file), _) => {
             let stderr = read_counted(file, left_out.as_ref())?;
             refuse_negative(file, &stderr)?;
+            warn_of_exact((&phi, &stderr), left_out.as_ref(), console);
             Some(stderr)
         }
         (None, Some(noise)) => Some(relative_errors(

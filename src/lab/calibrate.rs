@@ -33,8 +33,8 @@
 //! 0.5 s, 4 frames; 0.7 % noise), 20 draws, off by 1°, 0.1 in., 1° and by 0.1 in. of each
 //! coordinate of the plate: MTF 1.000 with the right and with the calibrated geometry, errors over
 //! stated 1.04, 0.96, 0.90 and 1.00, 1.07, 1.13, held 112 of 120
-//! (`tests/physics/calibrated_past.rs`). Where the plate cuts a beam off its place has no slope,
-//! and the search may not end.
+//! (`tests/physics/calibrated_past.rs`). Where the plate cuts off the beam of a spot without a size
+//! its place has no slope, and the search may not end.
 
 mod calibration;
 mod common;

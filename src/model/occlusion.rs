@@ -217,22 +217,38 @@ impl<'a> Obstructed<'a> {
             return cells.iter().map(light).collect();
         }
         let mut found = vec![[0.0; 3]; cells.len()];
-        let mut pieces = Pieces::default();
         for (wall, free) in &self.lit[spot] {
-            let hidden = self
-                .opaque
-                .from(wall.position, wall.surface, self.scene.bvh());
-            for (sums, cell) in found.iter_mut().zip(cells) {
-                let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
-                sums[0] += all;
-                if *free && all != 0.0 {
-                    let [left, at_viewpoint] = self.lit_past(wall, &hidden, cell, all, &mut pieces);
-                    sums[1] += left;
-                    sums[2] += at_viewpoint;
-                }
-            }
+            self.add_lit((wall, *free), cells, &mut found);
         }
         found
+    }
+
+    /// Adds to these what a lit point sends to each of the cells.
+    fn add_lit(
+        &self,
+        (wall, free): (&WallPoint, bool),
+        cells: &[HiddenCell],
+        found: &mut [[f64; 3]],
+    ) {
+        let mut pieces = Pieces::default();
+        let bvh = self.scene.bvh();
+        let hidden = self.opaque.from(wall.position, wall.surface, bvh);
+        for (sums, cell) in found.iter_mut().zip(cells) {
+            let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
+            sums[0] += all;
+            if free && all != 0.0 {
+                let [left, at_viewpoint] = self.lit_past(wall, &hidden, cell, all, &mut pieces);
+                sums[1] += left;
+                sums[2] += at_viewpoint;
+            }
+        }
+    }
+
+    /// What a point of the wall, if it is lit, sends to each of the cells past everything.
+    pub(super) fn lit_by(&self, wall: &WallPoint, cells: &[HiddenCell]) -> Vec<f64> {
+        let mut found = vec![[0.0; 3]; cells.len()];
+        self.add_lit((wall, true), cells, &mut found);
+        found.iter().map(|[_, left, _]| *left).collect()
     }
 
     /// What of `all` arrives on a cell past everything, and what did if its viewpoint stood for it.

@@ -8,6 +8,7 @@
 //! ends to meet a piece. A shadow is that of relative motion: figures and pieces are followed in
 //! the frame of the point that it is seen from.
 
+mod beams;
 mod lit;
 
 use super::cells::HiddenCell;
@@ -55,6 +56,8 @@ pub(super) struct Sweep<'a> {
     middles: Vec<Vec<[WallRate; AT_ONCE]>>,
     /// The points of each spot.
     lit: Vec<Vec<[WallRate; AT_ONCE]>>,
+    /// What moves across each spot.
+    edges: Vec<Vec<(WallPoint, Rates)>>,
 }
 
 /// Velocities of a point, per unit of each parameter.
@@ -74,6 +77,7 @@ impl<'a> Sweep<'a> {
             seen: Vec::new(),
             middles: Vec::new(),
             lit: Vec::new(),
+            edges: Vec::new(),
         };
         let camera = found.of(|k| velocities[k].camera);
         let shadows = found.shadows((scene.camera.position, camera), None);
@@ -116,6 +120,8 @@ impl<'a> Sweep<'a> {
         };
         let lit = past.lit.iter().enumerate().map(spot).collect();
         found.lit = lit;
+        let edges = (0..past.spots()).map(|l| found.edges(l)).collect();
+        found.edges = edges;
         Some(found)
     }
 

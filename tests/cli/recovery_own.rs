@@ -154,6 +154,14 @@ fn what_is_not_the_surface_s_light_is_left_out_or_estimated() {
     npy::write(&workspace.path("holes.npy"), &holes).unwrap();
     let (_, without) = rmse("--phi holes.npy --left-out flags.npy");
     assert!(without < 1e-3, "{without}");
+    let exact = flags.zip_map(&model, |flag, x| 0.01 * x * (1.0 - flag));
+    npy::write(&workspace.path("exact.npy"), &exact).unwrap();
+    let marked = flags.iter().filter(|flag| **flag > 0.0).count();
+    let told = format!("{marked} of {} entries hold light", flags.len());
+    let (ended, _) = rmse("--phi done/model/phi.npy --stderr exact.npy");
+    assert!(ended.stderr.contains(&told), "{}", ended.account());
+    let (ended, _) = rmse("--phi done/model/phi.npy --stderr exact.npy --left-out flags.npy");
+    assert!(!ended.stderr.contains("hold light"), "{}", ended.account());
 
     // Pixel p of the 8 × 8 is column p % 8: x² and y, different in each frame.
     let lit = model.map_with_location(|p, l, x| {

@@ -12,7 +12,7 @@ use crate::cli::failure::Failure;
 use crate::cli::process::pool;
 use crate::cli::run_folder::RunFolder;
 use crate::cli::tasks::{Tasks, compute, identity};
-use crate::cli::{Outcome, reproduce, study};
+use crate::cli::{Outcome, refuse_undefinable, reproduce, study};
 use crate::jobs::{Checkpoint, Identity, Parts, Shards};
 use crate::scene::Scene;
 
@@ -37,9 +37,21 @@ impl Study {
     ) -> Result<Self, Failure> {
         refuse_unplanned(arguments)?;
         let json = json.then(|| "--json".to_owned());
-        let (scene, tasks) = match command(arguments.iter().cloned().chain(json))? {
+        let Args {
+            command, define, ..
+        } = parsed(arguments.iter().cloned().chain(json))?;
+        refuse_undefinable(&command, &define)?;
+        let own = Console {
+            define: &define,
+            ..console
+        };
+        let (scene, tasks) = match command {
             Command::Study(args) => {
-                let scene = console.load_scene(scene.unwrap_or(&args.scene))?;
+                // That of a plan has its values already.
+                let scene = match scene {
+                    Some(planned) => console.load_scene(planned)?,
+                    None => own.defined(console.load_scene(&args.scene)?)?,
+                };
                 let tasks = study::tasks(&args, &scene)?;
                 (Some(scene), tasks)
             }
@@ -136,15 +148,13 @@ fn refuse_unplanned(arguments: &[String]) -> Result<(), Failure> {
     ))
 }
 
-/// The command that the arguments spell.
-fn command(arguments: impl Iterator<Item = String>) -> Result<Command, Failure> {
+/// What the arguments spell.
+fn parsed(arguments: impl Iterator<Item = String>) -> Result<Args, Failure> {
     let program = std::iter::once("phicam".to_owned());
     // Where the files go is said by who merges.
     let output = ["-o".to_owned(), ".".to_owned()];
-    match Args::try_parse_from(program.chain(arguments).chain(output)) {
-        Ok(args) => Ok(args.command),
-        Err(error) => Err(Failure::Usage(error.to_string())),
-    }
+    let args = Args::try_parse_from(program.chain(arguments).chain(output));
+    args.map_err(|error| Failure::Usage(error.to_string()))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::is_own;
 use crate::cli::args::RecoverArgs;
-use crate::cli::beside::{Beside, PhotographSize, left_out, mask, relative_errors};
+use crate::cli::beside::{Beside, PhotographSize, left_out, mask, relative_errors, warn_of_exact};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_photographs, read_stderr};
@@ -50,7 +50,11 @@ impl RecoveryRequest<'_> {
                     relative_errors((&phi, noise), left_out.as_ref(), self.methods, self.console)?;
                 Some(known)
             }
-            Errors::File(file) => Some(read_stderr(&file, left_out.as_ref(), scene)?),
+            Errors::File(file) => {
+                let stderr = read_stderr(&file, left_out.as_ref(), scene)?;
+                warn_of_exact((&phi, &stderr), left_out.as_ref(), self.console);
+                Some(stderr)
+            }
             Errors::Unknown => {
                 self.console.say(
                     "no noise model is given (--noise or --stderr): joint weights all entries alike",

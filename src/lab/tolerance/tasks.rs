@@ -1,6 +1,7 @@
 //! The study in tasks: each one thing misplaced by one size.
 
-use crate::lab::problem::{lit, problem};
+use crate::lab::problem::{inverted, lit, problem};
+use crate::lab::validation::Integration;
 use serde::{Deserialize, Serialize};
 
 use super::results::{Misplacement, Sensitivity, Tolerance};
@@ -12,7 +13,7 @@ use crate::lab::study::Study;
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
 use crate::model::{
-    Differential, Effort, Extent, Fineness, Kernel, MatrixModel, ModelError, Swept, converged,
+    Differential, Effort, Extent, Fineness, Kernel, ModelError, Occlusion, Swept, converged,
     is_obstructed,
 };
 use crate::num::summation::tree_sum;
@@ -96,7 +97,8 @@ impl ToleranceTasks {
 
     /// Mean raw MTF of what is recovered with the model of `assumed`.
     fn mtf(&self, bench: &Bench, assumed: &Scene) -> Result<Option<f64>, ModelError> {
-        let model = MatrixModel::new(assumed, Kernel::Physical, None)?;
+        let how = (Integration::Quadrature, Effort::USUAL);
+        let model = inverted(assumed, Kernel::Physical, None, Occlusion::Considered, how)?;
         let recovered = |(phi, stderr): &(Matrix, Matrix)| {
             let problem = problem(&model, phi, Some(stderr)).ok()?;
             let found = recover(Method::Joint, &problem, &Options::default()).ok()?;

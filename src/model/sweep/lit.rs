@@ -15,6 +15,7 @@ impl Sweep<'_> {
         if scene.laser.is_shining() {
             return found;
         }
+        self.across(spot, cells, &mut found);
         let mut pieces = Pieces::default();
         for ((wall, free), rates) in self.past.lit[spot].iter().zip(&self.lit[spot]) {
             if !free {

@@ -162,3 +162,89 @@ fn a_hidden_mesh_in_cells_has_no_rates_here() {
     assert!(with_ball.contains(ball));
     assert!(!rates(&with_ball));
 }
+
+/// A plate half way up cuts the beam of a wide spot at x = e: as it moves, twice as fast moves its
+/// shadow, and the light grows by that of the points of the edge,
+///
+/// > ∂Φ/∂θ = 2 ∫_{|y| < h} f(e, y) L(e, y) dy,
+///
+/// f the profile and L the light of an ideal spot with nothing in the way.
+#[test]
+fn the_edge_that_cuts_a_beam_takes_its_light_along() {
+    let scene = |spots: &str, plate: f64| {
+        let text = format!(
+            "name = \"cut\"\nunit = \"in\"\nmax_bounces = 3\n\
+             [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [0, 0, 10]\n{spots}\n\
+             [camera]\nposition = [-20, 2, 10]\naperture_area = 0.05\npixels = [2, 2]\n\
+             view = {{ x = [-3, -2], y = [-1, 1] }}\n\
+             [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
+             rectangle = {{ corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0] }}\n\
+             [[surface]]\nname = \"board\"\nrole = \"hidden\"\nelements = [2, 2]\n\
+             rectangle = {{ corner = [-8, -2, 6], u = [0, 4, 0], v = [4, 0, 0] }}\n\
+             material = {{ lambertian = 0.7 }}\n\
+             [[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
+             rectangle = {{ corner = [{plate}, -20, 5], u = [20, 0, 0], v = [0, 40, 0] }}\n\
+             material = {{ lambertian = 0.0 }}\n"
+        );
+        Scene::from_toml("cut", &text).unwrap()
+    };
+    let light = |scene: &Scene| {
+        let extent = crate::model::Extent::FULL;
+        let found = crate::model::converged(scene, Kernel::Physical, extent);
+        found.unwrap().phi
+    };
+    let pi = std::f64::consts::PI;
+    for (profile, radius, e) in [
+        ("disc", 0.5, 0.2),
+        ("disc", 0.5, -0.3),
+        ("gaussian", 0.4, 0.1),
+    ] {
+        let is_disc = profile == "disc";
+        let (half, scale) = if is_disc {
+            (
+                (radius * radius - e * e as f64).sqrt(),
+                1.0 / (pi * radius * radius),
+            )
+        } else {
+            (3.0 * radius, 2.0 / (pi * radius * radius))
+        };
+        let rule = crate::num::quadrature::Rule::gauss_legendre(24);
+        let nodes: Vec<(f64, f64)> = rule.on(-half, half).collect();
+        let points: Vec<[f64; 2]> = nodes.iter().map(|(y, _)| [e, *y]).collect();
+        // The plate is far to the right of these.
+        let ideal = scene(
+            &format!("spots = {{ layout = \"list\", points = {points:?} }}"),
+            9.0,
+        );
+        let ideal = light(&ideal);
+        let wide = scene(
+            &format!(
+                "spot_diameter = {}\nprofile = \"{profile}\"\nspots = {{ layout = \"list\", points = [[0, 0], [-9, 1]] }}",
+                2.0 * radius
+            ),
+            0.5 * e,
+        );
+        let parameters = Parameter::named(&wide, "plate.x").unwrap();
+        let velocity = wide.velocity(&parameters, &[0.0], 0);
+        let swept = Swept::new(&wide, None, &[velocity], Effort::USUAL);
+        let swept = swept.unwrap().unwrap();
+        let rate = swept.rates[0].as_ref().unwrap();
+        let rate = rate.phi(&vec![0.7; swept.elements]);
+        for p in 0..4 {
+            let of = |(k, (y, w)): (usize, &(f64, f64))| {
+                let fall = if is_disc {
+                    1.0
+                } else {
+                    libm::exp(-2.0 * (e * e + y * y) / (radius * radius))
+                };
+                2.0 * w * scale * fall * ideal[(p, k)]
+            };
+            let want: f64 = nodes.iter().enumerate().map(of).sum();
+            let off = (rate[(p, 0)] / want - 1.0).abs();
+            println!("{profile} {e} {p}: {off:.1e}");
+            assert!(off < 0.02, "{profile} {e} {p}: {} for {want}", rate[(p, 0)]);
+            // The other beam meets nothing.
+            assert!(rate[(p, 1)].abs() < 1e-9 * want);
+        }
+    }
+}

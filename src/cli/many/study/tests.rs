@@ -36,6 +36,25 @@ fn small(folder: &Path, name: &str) -> String {
     path.to_string_lossy().into_owned()
 }
 
+/// Other values of keys behind the command are those of its scene, as before the dashes; what names
+/// no scene has none.
+#[test]
+fn a_planned_command_has_its_own_values() {
+    let line = words("study spots bench -D camera.pixels=[6,6] -D laser.spots.per_side=4");
+    let study = Study::new(&line, None, false, CONSOLE).unwrap();
+    let scene = study.scene().unwrap();
+    let size = [scene.camera.columns, scene.camera.rows];
+    assert_eq!((size, scene.laser.spots.len()), ([6, 6], 16));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, &scene.text).unwrap();
+    let path = path.to_string_lossy();
+    let again = Study::new(&line, Some(&path), false, CONSOLE).unwrap();
+    assert_eq!(again.scene().unwrap().hash, scene.hash);
+    let none = words("reproduce table2 -D camera.pixels=[6,6]");
+    assert!(Study::new(&none, None, false, CONSOLE).is_err());
+}
+
 /// Runs `line` as it is, and in tasks of two processes, the second half first.
 fn same(line: &str) {
     let folder = tempfile::tempdir().unwrap();

@@ -54,3 +54,15 @@ fn the_limit_is_interpolated_in_log_size() {
     assert_eq!(falls_through(Some(1.0), &rows[..2], 0.5), None);
     assert_eq!(falls_through(Some(0.3), &rows, 0.15), None);
 }
+
+/// With hardly any noise the right geometry recovers the board: by its elements' centres, too
+/// coarse for what they send, 3 % of its modulation were lost.
+#[test]
+fn the_right_geometry_recovers_the_board() {
+    let tasks = ToleranceTasks::new(&small("bench"), 1e-6, 0.9);
+    let bench = tasks.context(Control::none()).unwrap();
+    let Placed::Right(Some(mtf)) = tasks.task(&bench, 0, Control::none()).unwrap() else {
+        panic!("nothing was recovered");
+    };
+    assert!((mtf - 1.0).abs() < 1e-3, "{mtf}");
+}
