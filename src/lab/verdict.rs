@@ -275,7 +275,7 @@ impl Agreement {
         };
         let [limit, of_spots] = score.limits.map(|z| significant(z, 3));
         Some(table.noted(format!(
-            "|z| up to {limit} is chance for the scene's parameters, {of_spots} for those of single spots, of which the loudest is listed."
+            "Values are first steps, as if the model were straight. |z| up to {limit} is chance for the scene's parameters, {of_spots} for those of single spots, of which the loudest is listed."
         )))
     }
 }

@@ -204,6 +204,39 @@ pub(super) fn lit(scene: &Scene, profile: Profile, n: usize) -> Vec<Vec<WallPoin
     (0..spots).map(lit).collect()
 }
 
+/// Points of the cell about each of [`profile_nodes`], `side` along the radius and around, of equal
+/// areas, each with its share of the cell's light. The cells are as wide along the radius as the
+/// rule weighs their nodes.
+pub(super) fn profile_cells(profile: Profile, n: usize, side: usize) -> Vec<Vec<([f64; 2], f64)>> {
+    let nodes = profile_nodes(profile, n);
+    let around = 2 * n;
+    let rule = Rule::gauss_legendre(nodes.len() / around);
+    let mut inner = 0.0;
+    let mut found = Vec::with_capacity(nodes.len());
+    for (_, width) in rule.on(0.0, reach(profile)) {
+        let outer = inner + width;
+        for k in 0..around {
+            let point = |i: usize| {
+                let part = |i: usize| (i as f64 + 0.5) / side as f64;
+                let r2 = inner * inner + (outer * outer - inner * inner) * part(i / side);
+                let angle = std::f64::consts::TAU * (k as f64 + part(i % side)) / around as f64;
+                let light = match profile {
+                    Profile::Gaussian { radius } => libm::exp(-2.0 * r2 / (radius * radius)),
+                    _ => 1.0,
+                };
+                let (sin, cos) = libm::sincos(angle);
+                ([r2.sqrt() * cos, r2.sqrt() * sin], light)
+            };
+            let points: Vec<_> = (0..side * side).map(point).collect();
+            let all: f64 = points.iter().map(|(_, light)| light).sum();
+            let share = |(at, light): ([f64; 2], f64)| (at, light / all);
+            found.push(points.into_iter().map(share).collect());
+        }
+        inner = outer;
+    }
+    found
+}
+
 /// The middles of the scene's elements with area · albedo/π.
 fn elements<'a>(scene: &'a Scene) -> Vec<(HiddenPoint, f64)> {
     let divided = |s: &'a Surface| s.divided(s.elements).into_iter().map(move |e| (s, e));

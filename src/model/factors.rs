@@ -33,8 +33,8 @@ pub struct Factors {
     pub terms: Terms,
     /// Relative Frobenius norm of what the last halving of the cells changed in all A_j, past
     /// obstacles at least half of what the one before did and two standard deviations of what
-    /// viewpoints leave to chance where camera and laser both see a part of a cell; and what another
-    /// division of footprints and spots does.
+    /// viewpoints leave to chance where camera and laser both see a part of a cell; and what
+    /// another division of footprints and spots does.
     pub change: f64,
     /// Cells of the hidden surfaces in the last step.
     pub cells: usize,
@@ -87,8 +87,8 @@ impl ElementGrid {
 /// over the areas of both ends; 1 where no light arrives in any case.
 pub(super) type Shares = [Matrix; 2];
 
-/// Halvings of an element at first and at most: 2 × 2 cells, and 32 × 32, all of which are held with
-/// all pixels.
+/// Halvings of an element at first and at most: 2 × 2 cells, and 32 × 32, all of which are held
+/// with all pixels.
 const FIRST: u32 = 1;
 const MOST_HALVINGS: u32 = 5;
 /// Relative change below which what is extrapolated is fine enough.

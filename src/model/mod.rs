@@ -12,6 +12,7 @@
 //! Three surfaces and a Lambertian object: what light does beyond that is for `transport` to show,
 //! which this floor never sees.
 
+mod beam;
 mod blocks;
 mod cells;
 mod converged;

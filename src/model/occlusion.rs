@@ -12,9 +12,10 @@
 //! asked ray by ray. How finely footprints and spots are divided for this is up to
 //! [`super::divided`].
 
+use super::beam;
 use super::blocks::Blocks;
 use super::cells::HiddenCell;
-use super::cut::{exitance, lit};
+use super::cut::exitance;
 use super::kernel::{HiddenPoint, Kernel};
 use super::parts::footprint_parts;
 use super::patch::{Patch, triangles};
@@ -35,8 +36,8 @@ pub(super) struct Obstructed<'a> {
     pub blocks: Blocks,
     /// Points of the wall that are looked at, where no footprint is near for its size.
     pub walls: usize,
-    /// Of each spot, each with whether the laser reaches it.
-    pub lit: Vec<Vec<(WallPoint, bool)>>,
+    /// Of each spot, each with the share of its light that reaches it.
+    pub lit: Vec<Vec<(WallPoint, f64)>>,
 }
 
 impl<'a> Obstructed<'a> {
@@ -48,7 +49,7 @@ impl<'a> Obstructed<'a> {
         obstacles: &[ShapeId],
         (nodes, side): (usize, usize),
     ) -> Self {
-        let lit = lit(scene, scene.laser.profile, nodes);
+        let lit = beam::reached(scene, nodes);
         let opaque = Opaque::new(scene.bvh(), |id| obstacles.contains(&id));
         let hidden = opaque.from(scene.camera.position, None, scene.bvh());
         let pixel = |p| {
@@ -62,15 +63,6 @@ impl<'a> Obstructed<'a> {
                 .collect()
         };
         let pixels: Vec<Vec<Patch>> = (0..scene.camera.pixels()).map(pixel).collect();
-        let laser = |w: WallPoint| {
-            let ray = Ray::between(scene.laser.position, w.position);
-            let free = ray.is_some_and(|ray| !scene.bvh().blocked(&ray, [None, w.surface]));
-            (w, free)
-        };
-        let lit: Vec<Vec<(WallPoint, bool)>> = lit
-            .into_iter()
-            .map(|spot| spot.into_iter().map(laser).collect())
-            .collect();
         Self {
             scene,
             kernel,
@@ -217,16 +209,16 @@ impl<'a> Obstructed<'a> {
             return cells.iter().map(light).collect();
         }
         let mut found = vec![[0.0; 3]; cells.len()];
-        for (wall, free) in &self.lit[spot] {
-            self.add_lit((wall, *free), cells, &mut found);
+        for (wall, share) in &self.lit[spot] {
+            self.add_lit((wall, *share), cells, &mut found);
         }
         found
     }
 
-    /// Adds to these what a lit point sends to each of the cells.
+    /// Adds to these what a point, of whose light a share arrives, sends to each of the cells.
     fn add_lit(
         &self,
-        (wall, free): (&WallPoint, bool),
+        (wall, share): (&WallPoint, f64),
         cells: &[HiddenCell],
         found: &mut [[f64; 3]],
     ) {
@@ -236,10 +228,10 @@ impl<'a> Obstructed<'a> {
         for (sums, cell) in found.iter_mut().zip(cells) {
             let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
             sums[0] += all;
-            if free && all != 0.0 {
+            if share > 0.0 && all != 0.0 {
                 let [left, at_viewpoint] = self.lit_past(wall, &hidden, cell, all, &mut pieces);
-                sums[1] += left;
-                sums[2] += at_viewpoint;
+                sums[1] += share * left;
+                sums[2] += share * at_viewpoint;
             }
         }
     }
@@ -247,7 +239,7 @@ impl<'a> Obstructed<'a> {
     /// What a point of the wall, if it is lit, sends to each of the cells past everything.
     pub(super) fn lit_by(&self, wall: &WallPoint, cells: &[HiddenCell]) -> Vec<f64> {
         let mut found = vec![[0.0; 3]; cells.len()];
-        self.add_lit((wall, true), cells, &mut found);
+        self.add_lit((wall, 1.0), cells, &mut found);
         found.iter().map(|[_, left, _]| *left).collect()
     }
 

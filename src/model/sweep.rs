@@ -114,7 +114,7 @@ impl<'a> Sweep<'a> {
             let middles = middles.collect();
             found.middles = middles;
         }
-        let spot = |(l, points): (usize, &Vec<(WallPoint, bool)>)| {
+        let spot = |(l, points): (usize, &Vec<(WallPoint, f64)>)| {
             let lit = |w| found.of(|k| tangent::lit(scene, velocities[k], l, w));
             points.iter().map(|(w, _)| lit(w)).collect()
         };

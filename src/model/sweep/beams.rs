@@ -9,7 +9,6 @@
 use super::{Rates, Sweep, add};
 use crate::geometry::{AT_ONCE, Basis, Moving, Pieces};
 use crate::model::cells::HiddenCell;
-use crate::model::cut::reach;
 use crate::model::tangent;
 use crate::model::wall_point::{self, WallPoint};
 use crate::scene::Profile;
@@ -17,13 +16,19 @@ use crate::scene::Profile;
 /// Squares a side about a spot, and parts a side of one, each with its own profile.
 const SIDE: usize = 32;
 const PARTS: usize = 8;
+/// Radii of a Gaussian spot beyond which e⁻⁸ of its light is left out.
+const GAUSSIAN_REACH: f64 = 2.0;
 
 impl Sweep<'_> {
     /// Where edges cut the beam of a spot: what all of the laser's power would light there, and how
     /// the share that does grows. Nothing of a spot without a size, or on a wall that is not flat.
     pub(super) fn edges(&self, spot: usize) -> Vec<(WallPoint, Rates)> {
         let (scene, laser) = (self.past.scene, &self.past.scene.laser);
-        let reach = reach(laser.profile);
+        let reach = match laser.profile {
+            Profile::Ideal | Profile::Shining { .. } => 0.0,
+            Profile::Disc { radius } => radius,
+            Profile::Gaussian { radius } => GAUSSIAN_REACH * radius,
+        };
         let own = &laser.spots[spot];
         let is_flat = scene.surfaces[own.surface as usize].shape.is_flat();
         if reach == 0.0 || !is_flat {
@@ -79,15 +84,20 @@ impl Sweep<'_> {
                 continue;
             }
             let mut grown = [0.0; AT_ONCE];
+            let (mut sum, mut moment) = (0.0, [0.0; 2]);
             for part in (0..PARTS * PARTS).map(|k| [k % PARTS, k / PARTS]) {
                 let part = [first[0] + part[0], first[1] + part[1]];
-                let density = density(laser.profile, part.map(|k| at(k as f64 + 0.5)));
+                let middle = part.map(|k| k as f64 + 0.5);
+                let density = density(laser.profile, middle.map(at));
                 if let (true, Some(own)) = (density > 0.0, growth(part, 1)) {
                     add(&mut grown, &own.map(|rate| rate * density));
+                    sum += density;
+                    (0..2).for_each(|axis| moment[axis] += density * middle[axis]);
                 }
             }
-            let middle = first.map(|k| k as f64 + 0.5 * PARTS as f64);
-            found.push((lit(middle, 1.0), grown));
+            if sum > 0.0 {
+                found.push((lit(moment.map(|m| m / sum), 1.0), grown));
+            }
         }
         found
     }

@@ -17,8 +17,8 @@ impl Sweep<'_> {
         }
         self.across(spot, cells, &mut found);
         let mut pieces = Pieces::default();
-        for ((wall, free), rates) in self.past.lit[spot].iter().zip(&self.lit[spot]) {
-            if !free {
+        for ((wall, share), rates) in self.past.lit[spot].iter().zip(&self.lit[spot]) {
+            if *share == 0.0 {
                 continue;
             }
             let carried = rates.map(|rate| rate.position);
@@ -35,13 +35,14 @@ impl Sweep<'_> {
                 if pieces.past([&*whole], corners, &shadows) {
                     let (whole, _) = area_and_middle(corners);
                     for piece in pieces.iter() {
-                        add(sum, &self.lit_rate(piece, (wall, rates), cell, whole));
+                        let rate = self.lit_rate(piece, (wall, rates), cell, whole);
+                        add(sum, &rate.map(|x| share * x));
                     }
                 } else if !self.is_still {
                     let moves = self.moves(cell);
                     let rate = |k: usize| {
                         let to = (&cell.point, &moves[k]);
-                        wall.towards_rate(scene, &rates[k], to) * cell.area
+                        share * wall.towards_rate(scene, &rates[k], to) * cell.area
                     };
                     add(sum, &self.of(rate));
                 }

@@ -200,9 +200,10 @@ fn the_edge_that_cuts_a_beam_takes_its_light_along() {
         ("gaussian", 0.4, 0.1),
     ] {
         let is_disc = profile == "disc";
+        let e: f64 = e;
         let (half, scale) = if is_disc {
             (
-                (radius * radius - e * e as f64).sqrt(),
+                (radius * radius - e * e).sqrt(),
                 1.0 / (pi * radius * radius),
             )
         } else {
@@ -241,7 +242,6 @@ fn the_edge_that_cuts_a_beam_takes_its_light_along() {
             };
             let want: f64 = nodes.iter().enumerate().map(of).sum();
             let off = (rate[(p, 0)] / want - 1.0).abs();
-            println!("{profile} {e} {p}: {off:.1e}");
             assert!(off < 0.02, "{profile} {e} {p}: {} for {want}", rate[(p, 0)]);
             // The other beam meets nothing.
             assert!(rate[(p, 1)].abs() < 1e-9 * want);
