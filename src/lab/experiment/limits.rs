@@ -36,7 +36,8 @@ pub(super) fn thresholds(
 }
 
 /// From the first point on, how far the line stays at or above `level`; `None` where it does not
-/// start there. Between points it is straight over the logarithm of x, or over x where one end is 0.
+/// start there. Between points it is straight over the logarithm of x, or over x where one end is
+/// 0.
 fn last_readable(line: &[[f64; 2]], level: f64) -> Option<f64> {
     let [first, ..] = line else { return None };
     if first[1] < level {

@@ -109,7 +109,8 @@ pub struct Threshold {
     /// How the glare is spread.
     pub spread: String,
     /// Largest glare over signal up to which the mean normalized modulation stays at or above
-    /// [`Experiment::READABLE`] of the picture's own; none where the least glare of the study is too much.
+    /// [`Experiment::READABLE`] of the picture's own; none where the least glare of the study is
+    /// too much.
     pub glare: Option<f64>,
     /// Shortest exposure, s, from which on it stays there with glare as strong as the signal; none
     /// where no exposure of the study is enough.
