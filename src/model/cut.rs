@@ -22,6 +22,9 @@ const PRODUCTS: f64 = 8.0;
 /// power.
 const GAUSSIAN_REACH: f64 = 4.0;
 
+/// Its multiples, less what is whole, leave the unit interval most evenly filled.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// How far from its target a spot lights the wall.
 pub(super) fn reach(profile: Profile) -> f64 {
     match profile {
@@ -204,35 +207,37 @@ pub(super) fn lit(scene: &Scene, profile: Profile, n: usize) -> Vec<Vec<WallPoin
     (0..spots).map(lit).collect()
 }
 
-/// Points of the cell about each of [`profile_nodes`], `side` along the radius and around, of equal
-/// areas, each with its share of the cell's light. The cells are as wide along the radius as the
-/// rule weighs their nodes.
-pub(super) fn profile_cells(profile: Profile, n: usize, side: usize) -> Vec<Vec<([f64; 2], f64)>> {
+/// So many points of the cell about each of [`profile_nodes`], all of the same light: a cell holds
+/// as much as the rule gives its node, and points of one ring lie where that many parts of the
+/// light lie within,
+///
+/// > r = R √S of a disc,   r = w √(−½ ln(1 − S)) of a Gaussian,
+///
+/// and around by steps of the golden ratio, so that no edge meets many at once.
+pub(super) fn profile_cells(profile: Profile, n: usize, points: usize) -> Vec<Vec<[f64; 2]>> {
     let nodes = profile_nodes(profile, n);
     let around = 2 * n;
-    let rule = Rule::gauss_legendre(nodes.len() / around);
+    let within = |share: f64| match profile {
+        Profile::Gaussian { radius } => {
+            radius * (-0.5 * libm::log((1.0 - share).max(f64::EPSILON))).sqrt()
+        }
+        other => reach(other) * share.sqrt(),
+    };
     let mut inner = 0.0;
     let mut found = Vec::with_capacity(nodes.len());
-    for (_, width) in rule.on(0.0, reach(profile)) {
-        let outer = inner + width;
-        for k in 0..around {
+    for ring in nodes.chunks(around) {
+        let own = ring.iter().map(|(_, share)| share).sum::<f64>();
+        let cell = |k: usize| -> Vec<[f64; 2]> {
             let point = |i: usize| {
-                let part = |i: usize| (i as f64 + 0.5) / side as f64;
-                let r2 = inner * inner + (outer * outer - inner * inner) * part(i / side);
-                let angle = std::f64::consts::TAU * (k as f64 + part(i % side)) / around as f64;
-                let light = match profile {
-                    Profile::Gaussian { radius } => libm::exp(-2.0 * r2 / (radius * radius)),
-                    _ => 1.0,
-                };
-                let (sin, cos) = libm::sincos(angle);
-                ([r2.sqrt() * cos, r2.sqrt() * sin], light)
+                let r = within(inner + own * (i as f64 + 0.5) / points as f64);
+                let turn = (k as f64 + (GOLDEN * i as f64).fract()) / around as f64;
+                let (sin, cos) = libm::sincos(std::f64::consts::TAU * turn);
+                [r * cos, r * sin]
             };
-            let points: Vec<_> = (0..side * side).map(point).collect();
-            let all: f64 = points.iter().map(|(_, light)| light).sum();
-            let share = |(at, light): ([f64; 2], f64)| (at, light / all);
-            found.push(points.into_iter().map(share).collect());
-        }
-        inner = outer;
+            (0..points).map(point).collect()
+        };
+        found.extend((0..ring.len()).map(cell));
+        inner += own;
     }
     found
 }
