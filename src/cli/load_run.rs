@@ -133,7 +133,13 @@ pub(super) fn read_photographs(
 
 /// [`read_undamaged`], of which what is left out need not be finite.
 pub(super) fn read_counted(path: &Path, left_out: Option<&Matrix>) -> Result<Matrix, Failure> {
-    let matrix = npy::read_counted(path, left_out).map_err(|e| match e {
+    let matrix = counted(path, left_out)?;
+    refuse_damaged(path)?;
+    Ok(matrix)
+}
+
+fn counted(path: &Path, left_out: Option<&Matrix>) -> Result<Matrix, Failure> {
+    npy::read_counted(path, left_out).map_err(|e| match e {
         NpyError::NotFinite {
             row, column, value, ..
         } => Failure::new(
@@ -144,9 +150,7 @@ pub(super) fn read_counted(path: &Path, left_out: Option<&Matrix>) -> Result<Mat
             "mend it, or mark that entry in the file of --left-out: only finite numbers count",
         ),
         other => other.into(),
-    })?;
-    refuse_damaged(path)?;
-    Ok(matrix)
+    })
 }
 
 /// Refuses a matrix that is not pixels × spots of `scene`.
@@ -184,8 +188,11 @@ pub(super) fn read_stderr(
     left_out: Option<&Matrix>,
     scene: &Scene,
 ) -> Result<Matrix, Failure> {
-    let matrix = read_photographs(path, left_out, scene)?;
+    // By its header, before memory is taken for its numbers.
+    refuse_shape(path, npy::shape(path)?, scene)?;
+    let matrix = counted(path, left_out)?;
     refuse_negative(path, &matrix)?;
+    refuse_damaged(path)?;
     Ok(matrix)
 }
 
