@@ -1718,15 +1718,6 @@ BREAKS = [
         13,
     ),
     Break(
-        "What elements may be off by is not what one lucky halving changed",
-        "src/model/factors.rs",
-        "change.max(0.5 * earlier)",
-        "change.max(0.0 * earlier)",
-        "physics",
-        "divided::pixel_and_spot_see_the_same_part_of_an_element",
-        13,
-    ),
-    Break(
         "An edge that cuts a beam takes its light along",
         "src/model/sweep/lit.rs",
         "self.across(spot, cells, &mut found);",
