@@ -1,5 +1,7 @@
 //! What of the laser's beams reaches the wall past what stands in the way.
 
+use std::cell::LazyCell;
+
 use super::cut::{lit, profile_cells, reach};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{Basis, Ray};
@@ -16,7 +18,8 @@ const RIM: usize = 64;
 pub(super) fn reached(scene: &Scene, nodes: usize) -> Vec<Vec<(WallPoint, f64)>> {
     let profile = scene.laser.profile;
     let side = RAYS.div_ceil(nodes);
-    let cells = profile_cells(profile, nodes, side * side);
+    // Few scenes have a spot that is cut.
+    let cells = LazyCell::new(|| profile_cells(profile, nodes, side * side));
     let is_free = |w: &WallPoint| {
         let ray = Ray::between(scene.laser.position, w.position);
         ray.is_some_and(|ray| !scene.bvh().blocked(&ray, [None, w.surface]))

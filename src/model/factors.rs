@@ -181,8 +181,9 @@ pub(super) fn settled<'a>(
     let other = walls.other.map(|(_, other)| other);
     let left = other.as_ref().map_or(0.0, |other| moved(other, &rough));
     let occlusion = &past.occlusion;
-    // Past an edge a halving may change little by luck; the one before then tells the size.
-    let mut earlier = if is_smooth {
+    // Past an edge a halving may change little by luck; the one before then tells the size. Of
+    // light that follows the geometry nobody asks.
+    let mut earlier = if is_smooth || follows {
         0.0
     } else {
         moved(&past.all(&cut_in(FIRST - 1))?, &rough)

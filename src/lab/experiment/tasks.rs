@@ -176,21 +176,20 @@ impl Study for ExperimentTasks {
             .collect();
         let by_exposure = by_glare.split_off(2 * plan.glares.len());
         let hidden = scene.hidden().map(|(_, s)| format!("`{}`", s.name));
-        let own_modulation = context.laboratory.own_modulation();
-        let level = Experiment::READABLE * own_modulation;
         let mut found = Experiment {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
             sensor: plan.sensor_name.clone(),
             seeds: plan.seeds,
             signal: signal.mean(),
-            own_modulation,
+            own_modulation: context.laboratory.own_modulation(),
             direct_over_signal: context.direct / signal.sum(),
-            thresholds: thresholds(&by_glare, &by_exposure, level),
+            thresholds: Vec::new(),
             by_glare,
             by_exposure,
             words: Vec::new(),
         };
+        found.thresholds = thresholds(&found.by_glare, &found.by_exposure, found.readable());
         found.words = words(&found, &hidden.collect::<Vec<_>>().join(" and "));
         Ok(found)
     }

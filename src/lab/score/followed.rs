@@ -27,14 +27,15 @@ pub(super) struct Followed {
     pub derivative: Matrix,
 }
 
-/// Follows a deviation of the spots `columns` whose first step is `first`; `moved` gives change and
-/// derivative at each size. None where there are none, or no end.
+/// Follows a deviation of the spots `columns` from `start`, whose first step is `first`; `moved`
+/// gives change and derivative at each size. None where there are none, or no end.
 pub(super) fn followed(
-    (evidence, test): (Evidence<'_>, Test),
+    (start, test): (&Residual<'_>, Test),
     columns: &Range<usize>,
     first: f64,
     moved: &dyn Fn(f64) -> Option<[Matrix; 2]>,
 ) -> Option<Followed> {
+    let evidence = start.evidence;
     let at = |size: f64| {
         let [change, derivative] = moved(size)?;
         let model = evidence.model + &change;
@@ -55,7 +56,6 @@ pub(super) fn followed(
         };
         Some((residual.squares(columns), step, found))
     };
-    let start = Residual::new(evidence, test, Weights::Smoothed);
     let (mut left, mut step, mut from) = (start.squares(columns), first, 0.0);
     let mut here: Option<(Fit, Followed)> = None;
     for _ in 0..STEPS {
@@ -113,18 +113,17 @@ mod tests {
             significance: 1e-3,
         };
         let all = 0..columns;
-        let first = Residual::new(evidence, test, Weights::Smoothed)
-            .fit(&slope(0.0), &all)
-            .unwrap();
+        let start = Residual::new(evidence, test, Weights::Smoothed);
+        let first = start.fit(&slope(0.0), &all).unwrap();
         assert!(first.value > 2.0, "{}", first.value);
         let moved = |theta: f64| Some([light(theta) - &here, slope(theta)]);
-        let found = followed((evidence, test), &all, first.value, &moved).unwrap();
+        let found = followed((&start, test), &all, first.value, &moved).unwrap();
         let off = (found.fit.value - TRUE) / found.fit.stderr;
         assert!(off.abs() < 4.0, "{off}");
         // Σ (d/σ)², the information.
         let information = slope(TRUE).component_div(&stderr).norm_squared();
         let ratio = found.fit.stderr * information.sqrt();
         assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
-        assert!(followed((evidence, test), &all, first.value, &|_| None).is_none());
+        assert!(followed((&start, test), &all, first.value, &|_| None).is_none());
     }
 }

@@ -121,7 +121,7 @@ impl Causes<'_> {
             let [change, derivative] = (self.derivatives.moved)(index, inside)?;
             Some([of(change)?, of(derivative)?])
         };
-        let found = followed((evidence, self.test), &columns, d.value, &moved)?;
+        let found = followed((self.residual, self.test), &columns, d.value, &moved)?;
         let deviation = Deviation {
             value: found.fit.value,
             stderr: found.fit.stderr,

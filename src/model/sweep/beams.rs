@@ -17,7 +17,7 @@ use crate::scene::Profile;
 const SIDE: usize = 32;
 const PARTS: usize = 8;
 /// Radii of a Gaussian spot beyond which e⁻⁸ of its light is left out.
-const GAUSSIAN_REACH: f64 = 2.0;
+const EDGE_REACH: f64 = 2.0;
 
 impl Sweep<'_> {
     /// Where edges cut the beam of a spot: what all of the laser's power would light there, and how
@@ -27,7 +27,7 @@ impl Sweep<'_> {
         let reach = match laser.profile {
             Profile::Ideal | Profile::Shining { .. } => 0.0,
             Profile::Disc { radius } => radius,
-            Profile::Gaussian { radius } => GAUSSIAN_REACH * radius,
+            Profile::Gaussian { radius } => EDGE_REACH * radius,
         };
         let own = &laser.spots[spot];
         let is_flat = scene.surfaces[own.surface as usize].shape.is_flat();
