@@ -140,7 +140,7 @@ fn unobstructed(
     [together, apart]: [f64; 2],
 ) -> Converged {
     let cut = Cut::new(scene, extent);
-    let integrate = |level: Level| cut.integrate(scene, kernel, level);
+    let integrate = |level: Level| cut.integrate(kernel, level);
     let finer = |level: Level, most| cut.connections(level) <= most;
     let first = integrate(Level::both(0));
     let (mut series, mut rough) = (Series::at(0, first.clone()), None);
@@ -179,7 +179,7 @@ pub fn integrated(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Result<Matrix,
     if scene.hidden().next().is_none() {
         return Err(ModelError::NothingHidden);
     }
-    Ok(Cut::new(scene, nodes.extent).integrate(scene, kernel, Level::both(nodes.level)))
+    Ok(Cut::new(scene, nodes.extent).integrate(kernel, Level::both(nodes.level)))
 }
 
 /// What is integrated over, and the level of refinement.
@@ -228,7 +228,8 @@ mod tests {
 
     /// A disc beside its axis, between points of a wall: to 1e-9 a polar rule written here, Gauss–
     /// Legendre in r and the trapezoidal rule around, 1e-9 from one of half the nodes. Plain and
-    /// checkered cells alike: a checkerboard of two equal albedos is the plain disc.
+    /// checkered cells alike: a checkerboard of two equal albedos is the plain disc. And so is a
+    /// wide spot beside which the wall ends.
     #[test]
     fn discs_are_integrated() {
         let (spots, c, radius, camera) = ([[1.0, 1.5], [7.5, 4.0]], [4.0, 9.0, 3.0], 1.8, 15.0);
@@ -292,6 +293,41 @@ mod tests {
                         "{albedo}: {error:e} > {bound:e}"
                     );
                 }
+            }
+        }
+        // The wall ends at x = 7.7, 0.2 beside the middle of the second spot, of radius ½: the sum
+        // over points (7.5 + ½ sin θ, 4 + ½ t cos θ), t from −1 to 1.
+        let ends = text("0.7")
+            .replacen("u = [60, 0, 0]", "u = [37.7, 0, 0]", 1)
+            .replacen("[laser.spots]", "spot_diameter = 1.0\n[laser.spots]", 1);
+        let [theta, t] = [24, 12].map(Rule::gauss_legendre);
+        let until = libm::asin(0.4);
+        for profile in ["disc", "gaussian"] {
+            let named = format!("spot_diameter = 1.0\nprofile = \"{profile}\"");
+            let scene = ends.replacen("spot_diameter = 1.0", &named, 1);
+            let scene = Scene::from_toml("ends", &scene).unwrap();
+            let found = converged(&scene, Kernel::Physical, extent).unwrap();
+            if profile == "gaussian" {
+                let worst = found.worst().unwrap().1;
+                assert!(worst < 1e-6, "{worst:e}");
+                continue;
+            }
+            for p in 0..2 {
+                let mut truth = 0.0;
+                for (theta, w) in theta.on(-std::f64::consts::FRAC_PI_2, until) {
+                    let (sin, cos) = libm::sincos(theta);
+                    for (t, v) in t.on(-1.0, 1.0) {
+                        let at = [7.5 + 0.5 * sin, 4.0 + 0.5 * t * cos];
+                        let share = w * v * cos * cos * std::f64::consts::FRAC_1_PI;
+                        truth += share * light(at, p as f64, 12);
+                    }
+                }
+                let (phi, bound) = (found.phi[(p, 1)], found.bound[(p, 1)]);
+                let error = (phi - truth).abs();
+                assert!(
+                    error < 1e-8 * truth && bound < 1e-6 * truth,
+                    "{phi:e} for {truth:e}, bound {bound:e}"
+                );
             }
         }
     }

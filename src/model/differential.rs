@@ -63,6 +63,8 @@ pub struct Differential<'a> {
     seen: Vec<Vec<WallPoint>>,
     /// Of each spot; none where a surface shines.
     lit: Vec<Vec<WallPoint>>,
+    /// Of each spot, the ends of the wall across it.
+    ends: Vec<Vec<(WallPoint, DVec3)>>,
     grids: Vec<ElementGrid>,
 }
 
@@ -99,7 +101,7 @@ impl<'a> Differential<'a> {
         };
         let numbered = of.into_iter().enumerate();
         let cells = numbered.flat_map(|(j, own)| own.into_iter().map(move |cell| (cell, j)));
-        let (seen, lit) = match fineness.rule() {
+        let (seen, lit, ends) = match fineness.rule() {
             None => {
                 let pixels = 0..scene.camera.pixels();
                 let spots = 0..scene.laser.spots.len();
@@ -114,12 +116,13 @@ impl<'a> Differential<'a> {
                     pixels
                         .map(|p| vec![wall_point::seen(scene, p, [0.5, 0.5], 1.0)])
                         .collect(),
-                    spots.map(lit).collect(),
+                    spots.clone().map(lit).collect(),
+                    spots.map(|_| Vec::new()).collect(),
                 )
             }
             Some((_, level)) => {
                 let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
-                (cut.seen(scene, level), cut.lit(scene, level))
+                (cut.seen(level), cut.lit(level), cut.ends(level))
             }
         };
         Ok(Self {
@@ -127,6 +130,7 @@ impl<'a> Differential<'a> {
             cells: cells.collect(),
             seen,
             lit,
+            ends,
             grids,
         })
     }
@@ -206,8 +210,20 @@ impl<'a> Differential<'a> {
                 own.iter().map(rate).collect::<Vec<_>>()
             };
             let rates: Vec<Vec<WallRate>> = self.lit.iter().enumerate().map(of).collect();
+            // What comes and goes over the wall's ends, as spots move against it.
+            let gained = |l: usize| {
+                let over = |(w, out): &(WallPoint, DVec3)| {
+                    let by = tangent::against_wall(self.scene, velocity, l, w);
+                    (*w, -by.dot(*out))
+                };
+                self.ends[l].iter().map(over).collect()
+            };
+            let gained: Vec<Vec<(WallPoint, f64)>> = (0..self.lit.len()).map(gained).collect();
             by_columns(self.cells.len(), self.lit.len(), |s, l| {
-                self.cells[s].0.area * side(&self.lit[l], &rates[l], s)
+                let (cell, _) = &self.cells[s];
+                let light = |w: &WallPoint| w.towards(self.scene, Kernel::Physical, &cell.point);
+                let over = gained[l].iter().map(|(w, by)| by * light(w)).sum::<f64>();
+                cell.area * (side(&self.lit[l], &rates[l], s) + over)
             })
         });
         TermsRate { camera, laser }

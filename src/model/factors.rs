@@ -155,7 +155,7 @@ pub(super) fn settled<'a>(
         let past = Past {
             scene,
             kernel,
-            footprints: cut.seen(scene, level),
+            footprints: cut.seen(level),
             follows,
             occlusion: divided::past(scene, kernel, obstacles, division),
             negligible: if is_smooth {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::cut::reach;
+use super::spot::reach;
 use super::wall_point;
 use crate::geometry::{DVec3, Region, Shape, ShapeId, Side};
 use crate::scene::{Scene, Spot};

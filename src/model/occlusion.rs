@@ -12,7 +12,7 @@
 //! asked ray by ray. How finely footprints and spots are divided for this is up to
 //! [`super::divided`].
 
-use super::beam;
+use super::beam::{Lit, reached};
 use super::blocks::Blocks;
 use super::cells::HiddenCell;
 use super::cut::exitance;
@@ -36,8 +36,8 @@ pub(super) struct Obstructed<'a> {
     pub blocks: Blocks,
     /// Points of the wall that are looked at, where no footprint is near for its size.
     pub walls: usize,
-    /// Of each spot, each with the share of its light that reaches it.
-    pub lit: Vec<Vec<(WallPoint, f64)>>,
+    /// Of each spot.
+    pub lit: Vec<Vec<Lit>>,
 }
 
 impl<'a> Obstructed<'a> {
@@ -49,7 +49,7 @@ impl<'a> Obstructed<'a> {
         obstacles: &[ShapeId],
         (nodes, side): (usize, usize),
     ) -> Self {
-        let lit = beam::reached(scene, nodes);
+        let lit = reached(scene, nodes);
         let opaque = Opaque::new(scene.bvh(), |id| obstacles.contains(&id));
         let hidden = opaque.from(scene.camera.position, None, scene.bvh());
         let pixel = |p| {
@@ -209,29 +209,29 @@ impl<'a> Obstructed<'a> {
             return cells.iter().map(light).collect();
         }
         let mut found = vec![[0.0; 3]; cells.len()];
-        for (wall, share) in &self.lit[spot] {
-            self.add_lit((wall, *share), cells, &mut found);
+        for lit in &self.lit[spot] {
+            self.add_lit(lit, cells, &mut found);
         }
         found
     }
 
-    /// Adds to these what a point, of whose light a share arrives, sends to each of the cells.
-    fn add_lit(
-        &self,
-        (wall, share): (&WallPoint, f64),
-        cells: &[HiddenCell],
-        found: &mut [[f64; 3]],
-    ) {
+    /// Adds to these what a part of a spot sends to each of the cells.
+    fn add_lit(&self, lit: &Lit, cells: &[HiddenCell], found: &mut [[f64; 3]]) {
         let mut pieces = Pieces::default();
         let bvh = self.scene.bvh();
-        let hidden = self.opaque.from(wall.position, wall.surface, bvh);
+        let Lit { whole, left } = lit;
+        let is_whole = whole == left;
+        let hidden = self.opaque.from(left.position, left.surface, bvh);
         for (sums, cell) in found.iter_mut().zip(cells) {
-            let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
+            let sent = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point) * cell.area;
+            let all = sent(whole);
             sums[0] += all;
-            if share > 0.0 && all != 0.0 {
-                let [left, at_viewpoint] = self.lit_past(wall, &hidden, cell, all, &mut pieces);
-                sums[1] += share * left;
-                sums[2] += share * at_viewpoint;
+            let arriving = if is_whole { all } else { sent(left) };
+            if arriving != 0.0 {
+                let [past, at_viewpoint] =
+                    self.lit_past(left, &hidden, cell, arriving, &mut pieces);
+                sums[1] += past;
+                sums[2] += at_viewpoint;
             }
         }
     }
@@ -239,7 +239,7 @@ impl<'a> Obstructed<'a> {
     /// What a point of the wall, if it is lit, sends to each of the cells past everything.
     pub(super) fn lit_by(&self, wall: &WallPoint, cells: &[HiddenCell]) -> Vec<f64> {
         let mut found = vec![[0.0; 3]; cells.len()];
-        self.add_lit((wall, 1.0), cells, &mut found);
+        self.add_lit(&Lit::free(*wall), cells, &mut found);
         found.iter().map(|[_, left, _]| *left).collect()
     }
 

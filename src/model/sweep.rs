@@ -11,6 +11,7 @@
 mod beams;
 mod lit;
 
+use super::beam::Lit;
 use super::cells::HiddenCell;
 use super::occlusion::Obstructed;
 use super::patch::Patch;
@@ -54,7 +55,7 @@ pub(super) struct Sweep<'a> {
     seen: Vec<Vec<Vec<Vec<Moving>>>>,
     /// The middles of these parts.
     middles: Vec<Vec<[WallRate; AT_ONCE]>>,
-    /// The points of each spot.
+    /// What arrives of the parts of each spot.
     lit: Vec<Vec<[WallRate; AT_ONCE]>>,
     /// What moves across each spot.
     edges: Vec<Vec<(WallPoint, Rates)>>,
@@ -114,9 +115,9 @@ impl<'a> Sweep<'a> {
             let middles = middles.collect();
             found.middles = middles;
         }
-        let spot = |(l, points): (usize, &Vec<(WallPoint, f64)>)| {
+        let spot = |(l, parts): (usize, &Vec<Lit>)| {
             let lit = |w| found.of(|k| tangent::lit(scene, velocities[k], l, w));
-            points.iter().map(|(w, _)| lit(w)).collect()
+            parts.iter().map(|part| lit(&part.left)).collect()
         };
         let lit = past.lit.iter().enumerate().map(spot).collect();
         found.lit = lit;

@@ -225,6 +225,17 @@ pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallP
     met(scene, velocity, point, device, [target, target_rate])
 }
 
+/// The velocity of a point that spot `spot` lights against the wall itself.
+pub(super) fn against_wall(
+    scene: &Scene,
+    velocity: &Velocity,
+    spot: usize,
+    point: &WallPoint,
+) -> DVec3 {
+    let wall = &velocity.surfaces[scene.laser.spots[spot].surface as usize];
+    lit(scene, velocity, spot, point).position - wall.at(point.position)
+}
+
 impl WallPoint {
     /// d/dθ of [`WallPoint::towards`] a hidden point that moves, with the physical kernel.
     pub(super) fn towards_rate(

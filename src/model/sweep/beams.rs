@@ -4,11 +4,13 @@
 //!
 //! f the light of a point of the spot on a cell, v the edge's velocity over the spot as it moves
 //! itself. The second term is that of squares of the wall about the spot, by how their free part
-//! grows.
+//! grows. The end of a wall is such an edge too, and stays where the wall is.
 
 use super::{Rates, Sweep, add};
-use crate::geometry::{AT_ONCE, Basis, Moving, Pieces};
+use crate::geometry::{AT_ONCE, Basis, DVec3, Moving, Pieces, Shadow};
 use crate::model::cells::HiddenCell;
+use crate::model::overhang::ends;
+use crate::model::spot::density;
 use crate::model::tangent;
 use crate::model::wall_point::{self, WallPoint};
 use crate::scene::Profile;
@@ -16,6 +18,11 @@ use crate::scene::Profile;
 /// Squares a side about a spot, and parts a side of one, each with its own profile.
 const SIDE: usize = 32;
 const PARTS: usize = 8;
+/// The squares are turned by so many radians: an edge along their sides, as of a plate through the
+/// middle of a spot, would cut none of them.
+const TURN: f64 = 0.4;
+/// Nodes of the rule along an end of the wall, as those from a spot's middle to its rim.
+const END_NODES: usize = 8;
 /// Radii of a Gaussian spot beyond which e⁻⁸ of its light is left out.
 const EDGE_REACH: f64 = 2.0;
 
@@ -37,9 +44,11 @@ impl Sweep<'_> {
         let carried = self.of(|k| self.velocities[k].laser);
         let shadows = self.shadows((laser.position, carried), Some(own.surface));
         let basis = Basis::around(own.target.normal);
+        let (sin, cos) = libm::sincos(TURN);
         let at = |k: f64| reach * (2.0 * k / (SIDE * PARTS) as f64 - 1.0);
         let lit = |[x, y]: [f64; 2], share: f64| {
-            let offset = basis.to_world([at(x), at(y), 0.0]);
+            let (x, y) = (at(x), at(y));
+            let offset = basis.to_world([cos * x - sin * y, sin * x + cos * y, 0.0]);
             wall_point::lit(scene, spot, offset, share)
         };
         // In the frame of the laser.
@@ -74,7 +83,19 @@ impl Sweep<'_> {
             add(&mut grown, &all_grown.map(|rate| -rate * area / all));
             (area > 0.0 && area < all).then_some(grown)
         };
-        let mut found = Vec::new();
+        let mut found: Vec<(WallPoint, Rates)> = Vec::new();
+        if !self.is_still {
+            let ends = ends(scene, spot, laser.profile, END_NODES).into_iter();
+            let is_lit = |w: &WallPoint| {
+                let dark = |s: &Shadow<_>| s.covers_box(w.position, DVec3::ZERO);
+                !shadows.iter().any(dark)
+            };
+            let lost = ends.filter(|(w, _)| is_lit(w)).map(|(w, out)| {
+                let against = |k: usize| tangent::against_wall(scene, self.velocities[k], spot, &w);
+                (w, self.of(|k| -against(k).dot(out)))
+            });
+            found.extend(lost);
+        }
         if growth([0; 2], SIDE * PARTS).is_none() {
             return found;
         }
@@ -88,7 +109,8 @@ impl Sweep<'_> {
             for part in (0..PARTS * PARTS).map(|k| [k % PARTS, k / PARTS]) {
                 let part = [first[0] + part[0], first[1] + part[1]];
                 let middle = part.map(|k| k as f64 + 0.5);
-                let density = density(laser.profile, middle.map(at));
+                let [x, y] = middle.map(at);
+                let density = density(laser.profile, libm::hypot(x, y));
                 if let (true, Some(own)) = (density > 0.0, growth(part, 1)) {
                     add(&mut grown, &own.map(|rate| rate * density));
                     sum += density;
@@ -110,18 +132,5 @@ impl Sweep<'_> {
                 add(sum, &grown.map(|rate| rate * light));
             }
         }
-    }
-}
-
-/// Share of the laser's power per area at a place of a spot.
-fn density(profile: Profile, [x, y]: [f64; 2]) -> f64 {
-    let r2 = x * x + y * y;
-    let per = |radius: f64| std::f64::consts::FRAC_1_PI / (radius * radius);
-    match profile {
-        Profile::Disc { radius } if r2 <= radius * radius => per(radius),
-        Profile::Gaussian { radius } => {
-            2.0 * per(radius) * libm::exp(-2.0 * r2 / (radius * radius))
-        }
-        Profile::Disc { .. } | Profile::Ideal | Profile::Shining { .. } => 0.0,
     }
 }

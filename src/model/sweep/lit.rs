@@ -2,6 +2,7 @@
 
 use super::{Rates, Sweep, add};
 use crate::geometry::{AT_ONCE, DVec3, Moving, Pieces, area_and_middle};
+use crate::model::beam::Lit;
 use crate::model::cells::HiddenCell;
 use crate::model::kernel::{HiddenPoint, Kernel};
 use crate::model::tangent::{HiddenRate, WallRate};
@@ -17,8 +18,8 @@ impl Sweep<'_> {
         }
         self.across(spot, cells, &mut found);
         let mut pieces = Pieces::default();
-        for ((wall, share), rates) in self.past.lit[spot].iter().zip(&self.lit[spot]) {
-            if *share == 0.0 {
+        for (Lit { left: wall, .. }, rates) in self.past.lit[spot].iter().zip(&self.lit[spot]) {
+            if wall.weight == 0.0 {
                 continue;
             }
             let carried = rates.map(|rate| rate.position);
@@ -35,14 +36,13 @@ impl Sweep<'_> {
                 if pieces.past([&*whole], corners, &shadows) {
                     let (whole, _) = area_and_middle(corners);
                     for piece in pieces.iter() {
-                        let rate = self.lit_rate(piece, (wall, rates), cell, whole);
-                        add(sum, &rate.map(|x| share * x));
+                        add(sum, &self.lit_rate(piece, (wall, rates), cell, whole));
                     }
                 } else if !self.is_still {
                     let moves = self.moves(cell);
                     let rate = |k: usize| {
                         let to = (&cell.point, &moves[k]);
-                        share * wall.towards_rate(scene, &rates[k], to) * cell.area
+                        wall.towards_rate(scene, &rates[k], to) * cell.area
                     };
                     add(sum, &self.of(rate));
                 }

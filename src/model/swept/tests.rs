@@ -198,6 +198,9 @@ fn the_edge_that_cuts_a_beam_takes_its_light_along() {
         ("disc", 0.5, 0.2),
         ("disc", 0.5, -0.3),
         ("gaussian", 0.4, 0.1),
+        // Through the middle, along an axis of the wall.
+        ("disc", 0.5, 0.0),
+        ("gaussian", 0.4, 0.0),
     ] {
         let is_disc = profile == "disc";
         let e: f64 = e;
