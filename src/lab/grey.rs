@@ -12,7 +12,7 @@ use super::problem::problem;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::digits::figure;
-use crate::recovery::{Options, determined, picard_joint};
+use crate::recovery::{Options, WeightRule, determined, picard_joint};
 
 /// Standard deviation of the prior, about ½.
 const BEFORE: f64 = 0.5;
@@ -49,7 +49,11 @@ impl<'a> Grey<'a> {
         }
         let stderr = self.noise.stderrs(&self.phi, 1.0);
         let problem = problem(self.model, &self.phi, Some(&stderr))?;
-        let sigma = picard_joint(&problem, &Options::default())?.sigma;
+        let by_entry = Options {
+            weighting: WeightRule::Entries,
+            ..Options::default()
+        };
+        let sigma = picard_joint(&problem, &by_entry)?.sigma;
         let above = |level: &f64| sigma.iter().filter(|s| **s * BEFORE > *level).count();
         Ok(LEVELS.iter().map(above).collect())
     }

@@ -158,6 +158,9 @@ pub fn recover(
     } else {
         by(method, problem, options)
     }?;
+    if found.rests_on_wrong_gains() {
+        found.standard_error = None;
+    }
     if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
         match bands::never(method) {
             Some(why) => found.no_bands = Some(why),

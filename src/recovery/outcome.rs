@@ -34,10 +34,12 @@ pub struct Recovered {
     /// ρ, one per element; not clipped, except by the bounds of `joint`.
     pub reflectance: DVector<f64>,
     /// Standard error of each reflectance as the noise model makes it; none without a noise model,
-    /// and none under bounds.
+    /// and none under bounds. Infinite for elements of which directions that were cut as rounding
+    /// may take more: no number that these photographs give is an error of theirs. None of
+    /// [`Self::rests_on_wrong_gains`].
     pub standard_error: Option<DVector<f64>>,
     /// Covariance of the reflectances (r × r) as the noise model makes it: of every method without
-    /// bounds.
+    /// bounds. Of the noise alone, of elements without a finite standard error as well.
     pub covariance: Option<DMatrix<f64>>,
     /// The resolution matrix R (r × r) of E ρ̂ = R ρ, of every method without bounds: (R − 1) ρ is
     /// the bias, column k the image of element k alone. It takes the parameter as given, not as
@@ -117,7 +119,10 @@ impl Recovered {
     #[must_use]
     pub fn with_more_error(mut self, d: &DVector<f64>) -> Self {
         let more = self.standard_error.as_mut().map(|own| {
-            let more = own.zip_map(d, |s, d| if s > 0.0 { libm::hypot(s, d) / s } else { 1.0 });
+            let more = own.zip_map(d, |s, d| match s {
+                s if s > 0.0 && s < f64::INFINITY => libm::hypot(s, d) / s,
+                _ => 1.0,
+            });
             own.component_mul_assign(&more);
             more
         });
@@ -233,6 +238,28 @@ impl Recovered {
             self.no_bands = Some(bands::BIASED);
         }
         Ok(())
+    }
+
+    /// Whether factors that are known only roughly were found with a pattern of two values that the
+    /// photographs refute: levels and errors are then those of wrong factors.
+    pub fn rests_on_wrong_gains(&self) -> bool {
+        let has_gains = self.nuisance.as_ref().is_some_and(|n| n.gains.is_some());
+        let exact = self.patterns.as_ref().and_then(|p| p.assumed().exact);
+        has_gains && exact.is_some_and(|exact| exact < Patterns::UNLIKELY)
+    }
+
+    /// Standard errors of ∞ where what was cut as rounding may take more of an element: of
+    /// reflectances ½ ± ½, ½ ‖(R − 1)_j‖ with `lost`_j = ‖(R − 1)_j‖². Of a cut that was asked for
+    /// by its rank R − 1 is regularisation, and its bias no part of a standard error.
+    pub(super) fn without_errors_of_the_unseen(mut self, lost: &DVector<f64>) -> Self {
+        if let (Choice::Tolerance { .. }, Some(errors)) = (self.choice, &mut self.standard_error) {
+            for (error, lost) in errors.iter_mut().zip(lost.iter()) {
+                if 0.5 * lost.max(0.0).sqrt() > *error {
+                    *error = f64::INFINITY;
+                }
+            }
+        }
+        self
     }
 
     /// A recovery without parameter, weights or noise model, its residual measured.

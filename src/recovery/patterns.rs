@@ -98,6 +98,9 @@ pub struct Patterns {
 }
 
 impl Patterns {
+    /// A probability below which exactly two reflectances are not to be taken for granted.
+    pub const UNLIKELY: f64 = 0.5;
+
     /// What was assumed for the picture and its standard errors.
     pub fn assumed(&self) -> &Self {
         match &self.if_alike {

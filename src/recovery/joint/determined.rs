@@ -5,10 +5,14 @@ use nalgebra::DVector;
 use super::khatri_rao::operator;
 use super::linear::about_grey;
 use super::scale;
-use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
+use crate::recovery::{Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.
 const BEFORE: f64 = 0.5;
+
+/// A misfit of weights by pixel and spot to those of the noise, in ln σ, above which they are not
+/// taken for the noise itself.
+const SEPARABLE: f64 = 1e-3;
 
 /// How much of each element the photographs determine.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,11 +47,17 @@ pub fn determined(problem: &Problem<'_>) -> Result<Determined, RecoveryError> {
             cure: "give the standard error of phi (phi.stderr.npy)",
         });
     }
-    let options = Options {
-        weighting: WeightRule::Noise,
-        ..Options::default()
+    let by = |weighting| {
+        let options = Options {
+            weighting,
+            ..Options::default()
+        };
+        about_grey(problem, &options, |problem| operator(problem, &options))
     };
-    let found = about_grey(problem, &options, |problem| operator(problem, &options))?;
+    let mut found = by(WeightRule::Noise)?;
+    if matches!(found.weighting, Weighting::Separable { misfit } if misfit > SEPARABLE) {
+        found = by(WeightRule::Entries)?;
+    }
     let found = found.directions()?;
     let (directions, _) = &*found;
     let before = BEFORE * scale::unit(problem)?;
@@ -71,7 +81,7 @@ mod tests {
 
     use super::*;
     use crate::recovery::Nuisance;
-    use crate::recovery::bench::Bench;
+    use crate::recovery::bench::{Bench, normal_stream};
 
     /// One element seen in n entries of signal a and noise σ: F = n a²/σ², R = F/(F + 4). Two
     /// elements that no entry tells apart share what one would have of twice the F: R = F/(2 F + 4)
@@ -101,19 +111,28 @@ mod tests {
         let bench = Bench::new(6.0, 2, 4);
         let phi = bench.phi(&bench.board(2).map(|x| 0.2 + 0.5 * x));
         let stderr = DMatrix::from_element(16, 120, 0.1 * phi.mean());
+        let mut normal = normal_stream(5);
+        // Of no form by pixel and spot: what a few entries of little noise tell counts as it is.
+        let uneven = stderr.map(|s| s * libm::exp(1.5 * normal()));
+        for stderr in [&stderr, &uneven] {
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(stderr)).unwrap();
+            let found = determined(&problem).unwrap();
+            let of = |j: usize, k: usize| -> f64 {
+                let sides = |p: usize, l: usize| {
+                    let both =
+                        bench.c[(p, j)] * bench.d[(j, l)] * bench.c[(p, k)] * bench.d[(k, l)];
+                    both / (stderr[(p, l)] * stderr[(p, l)])
+                };
+                let sum: f64 = (0..16 * 120).map(|i| sides(i % 16, i / 16)).sum();
+                sum + if j == k { 4.0 } else { 0.0 }
+            };
+            let after = DMatrix::from_fn(4, 4, of).try_inverse().unwrap();
+            for j in 0..4 {
+                assert!((found.shares[j] - (1.0 - 4.0 * after[(j, j)])).abs() < 1e-9);
+            }
+        }
         let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
         let found = determined(&problem).unwrap();
-        let of = |j: usize, k: usize| -> f64 {
-            let sides = |p: usize, l: usize| {
-                bench.c[(p, j)] * bench.d[(j, l)] * bench.c[(p, k)] * bench.d[(k, l)]
-            };
-            let sum: f64 = (0..16 * 120).map(|i| sides(i % 16, i / 16)).sum();
-            sum / (stderr[0] * stderr[0]) + if j == k { 4.0 } else { 0.0 }
-        };
-        let after = DMatrix::from_fn(4, 4, of).try_inverse().unwrap();
-        for j in 0..4 {
-            assert!((found.shares[j] - (1.0 - 4.0 * after[(j, j)])).abs() < 1e-9);
-        }
         let loud = stderr.map(|s| 10.0 * s);
         let loud = Problem::new(&phi, &bench.c, &bench.d, Some(&loud)).unwrap();
         assert!(determined(&loud).unwrap().rank < found.rank);

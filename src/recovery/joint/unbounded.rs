@@ -2,7 +2,8 @@
 //!
 //! ρ̂ = argmin Σ w_p v_l (Φ − C diag(ρ) D)², of minimum norm where that is not unique. Unbiased
 //! wherever the model has full rank; its covariance under the noise model Σ is (KᵀWK)⁻¹ KᵀWΣWK
-//! (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹.
+//! (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹. Where directions are dropped as
+//! rounding, elements that they may move by more than the noise have no finite standard error.
 
 use super::khatri_rao::operator;
 use super::reduced::{finish, over_brightest};
@@ -18,6 +19,9 @@ pub(in crate::recovery) fn recover(
     let elements = problem.c.ncols();
     let mut covariance = operator.covariance(problem, &solved);
     let resolution = tr_product(&solved.vt, &solved.vt);
+    // A projector's rows have the norm² of its diagonal; what is below its rounding is none.
+    let rounding = f64::EPSILON * elements as f64;
+    let lost = resolution.diagonal().map(|r| (1.0 - r - rounding).max(0.0));
     let mut found = finish(
         Method::JointUnbounded,
         problem,
@@ -48,7 +52,7 @@ pub(in crate::recovery) fn recover(
         .map(|c| c.diagonal().map(|x| x.max(0.0).sqrt()));
     found.covariance = covariance;
     found.resolution = Some(resolution);
-    Ok(found)
+    Ok(found.without_errors_of_the_unseen(&lost))
 }
 
 #[cfg(test)]
@@ -193,5 +197,36 @@ mod tests {
         assert!(
             found.rank == 1 && (found.reflectance - DVector::from_element(2, 1.0)).amax() < 1e-7
         );
+    }
+
+    /// Of two elements of equal columns only the sum is known, each may be off by ½ and more: no
+    /// finite error. The third, seen apart, keeps that of the noise, and noise that is larger than
+    /// what is lost is the error of all three.
+    #[test]
+    fn what_is_not_determined_has_no_finite_error() {
+        let c = DMatrix::from_fn(5, 3, |p, j| if j < 2 { 1.0 } else { p as f64 });
+        let d = DMatrix::from_fn(3, 4, |j, l| {
+            1.0 + if j < 2 {
+                l as f64
+            } else {
+                0.1 * (l * l) as f64
+            }
+        });
+        let phi = &c * DMatrix::from_diagonal(&DVector::from_column_slice(&[0.2, 0.6, 0.5])) * &d;
+        for (noise, unknown) in [(1e-3, true), (1e2, false)] {
+            let stderr = DMatrix::from_element(5, 4, noise);
+            let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+            let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
+            assert_eq!(found.rank, 2);
+            let errors = found.standard_error.unwrap();
+            for j in 0..3 {
+                assert_eq!(errors[j].is_infinite(), unknown && j < 2, "{errors}");
+            }
+            // By hand: (FᵀF)⁻¹ of the two columns that differ, the sum of the equal ones one.
+            let column = |j: usize| DVector::from_fn(20, |i, _| c[(i % 5, j)] * d[(j, i / 5)]);
+            let f = DMatrix::from_columns(&[column(0), column(2)]);
+            let variance = (f.tr_mul(&f)).try_inverse().unwrap()[(1, 1)];
+            assert!((errors[2] / (noise * variance.sqrt()) - 1.0).abs() < 1e-9);
+        }
     }
 }

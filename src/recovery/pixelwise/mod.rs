@@ -155,6 +155,23 @@ impl Inverse {
         Ok(sum)
     }
 
+    /// ‖(D D^# − 1)_j‖² of each element j: what of it the laser side does not tell. Its part in R
+    /// but for ratios of C.
+    fn lost(&self, d: &DMatrix<f64>) -> DVector<f64> {
+        let elements = d.nrows();
+        let told = product(d, &self.data.transpose());
+        let mut lost = DVector::zeros(elements);
+        for first in (0..elements).step_by(PIXELS) {
+            let count = PIXELS.min(elements - first);
+            let mut block = product(&told, &self.solution.columns(first, count).into_owned());
+            for (j, mut column) in (first..).zip(block.column_iter_mut()) {
+                column[j] -= 1.0;
+                lost[j] = column.norm_squared();
+            }
+        }
+        lost
+    }
+
     /// ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\], with uncertainty and resolution.
     fn recovered(
         self,
@@ -163,6 +180,7 @@ impl Inverse {
         options: &Options,
     ) -> Result<Recovered, RecoveryError> {
         let reflectance = self.sum(problem)? / problem.phi.nrows() as f64;
+        let lost = self.lost(problem.d);
         let mut found = Recovered::plain(method, problem, reflectance, self.sigma, self.rank)?;
         (found.parameter, found.choice) = self.why;
         found.effective_rank = self.effective_rank;
@@ -175,7 +193,7 @@ impl Inverse {
                 found.covariance = Some(uncertainty::covariance(stderr, &sharp, problem.c)?);
             }
         }
-        Ok(found)
+        Ok(found.without_errors_of_the_unseen(&lost))
     }
 }
 

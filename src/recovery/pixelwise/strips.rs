@@ -80,6 +80,7 @@ pub fn recover_strips<E: From<RecoveryError>>(
         at += phi.nrows();
     }
     let norms = [left.sqrt(), square.sqrt()];
+    let lost = inverse.lost(d);
     let mut found = Recovered::with_norms(method, norms, reflectance, inverse.sigma, inverse.rank);
     (found.parameter, found.choice) = inverse.why;
     found.effective_rank = inverse.effective_rank;
@@ -90,6 +91,7 @@ pub fn recover_strips<E: From<RecoveryError>>(
             terms.sum().sqrt() / pixels as f64
         })
     });
+    found = found.without_errors_of_the_unseen(&lost);
     if let Some(confidence) = options.bands {
         found.add_gaussian_bands(confidence)?;
     }
@@ -121,6 +123,7 @@ fn allowed(method: Method, options: &Options) -> Result<(), RecoveryError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::linalg::Tolerance;
     use crate::recovery::bench::{Bench, relative_noise};
     use crate::recovery::recover;
 
@@ -165,6 +168,39 @@ mod tests {
                 assert!((found.residual / known.residual - 1.0).abs() < 1e-9);
                 assert_eq!((found.parameter, found.rank), (known.parameter, known.rank));
             }
+        }
+    }
+
+    /// Three spots tell no four elements apart: none has a finite error, by rows as by all of Φ,
+    /// and one that a spot of its own lights keeps its own.
+    #[test]
+    fn elements_that_no_spot_tells_apart_have_no_finite_error() {
+        let c = DMatrix::from_fn(6, 4, |p, j| 1.0 + (p * (j + 1)) as f64);
+        let d = DMatrix::from_row_slice(4, 3, &[1., 2., 0., 3., 1., 0., 2., 2., 0., 0., 0., 5.]);
+        let phi = &c * DMatrix::from_diagonal_element(4, 4, 0.5) * &d;
+        let stderr = phi.map(|x| 1e-3 * x);
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        let strip = |first: usize| {
+            Ok::<_, RecoveryError>((first < 6).then(|| Strip {
+                phi: phi.rows(first, 2).into_owned(),
+                c: c.rows(first, 2).into_owned(),
+                stderr: Some(stderr.rows(first, 2).into_owned()),
+            }))
+        };
+        for method in [Method::Pinv, Method::Rdivide, Method::RdivideMinNorm] {
+            let all = recover(method, &problem, &Options::default()).unwrap();
+            let rows = recover_strips(method, &d, &Options::default(), strip).unwrap();
+            for found in [all, rows] {
+                let errors = found.standard_error.unwrap();
+                let unknown: Vec<bool> = errors.iter().map(|s| s.is_infinite()).collect();
+                assert_eq!(unknown, [true, true, true, false], "{method}: {errors}");
+            }
+            let given = Options {
+                tolerance: Tolerance::Rank(3),
+                ..Options::default()
+            };
+            let cut = recover(method, &problem, &given).unwrap();
+            assert!(cut.standard_error.unwrap().iter().all(|s| s.is_finite()));
         }
     }
 

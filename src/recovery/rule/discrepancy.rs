@@ -161,4 +161,23 @@ mod tests {
         );
         assert!(inside >= 380, "{inside}");
     }
+
+    /// Of fewer spots than elements the weakest regularisation leaves nothing over, where no noise
+    /// is left: it is accepted, and its rounding is no misfit.
+    #[test]
+    fn what_leaves_nothing_over_is_accepted() {
+        let bench = Bench::new(3.0, 4, 4);
+        let mut normal = normal_stream(3);
+        for spots in [3, 7, 10] {
+            let d = bench.d.columns(0, spots).into_owned();
+            let phi = (&bench.c * &d).map(|x| 1e-12 * x * (1.0 + 1e-4 * normal()));
+            let laser = svd(&d).unwrap();
+            let spectrum = Spectrum::of(&laser, spots);
+            let stderr = phi.map(|x| 1e-9 * x);
+            let problem = Problem::new(&phi, &bench.c, &d, Some(&stderr)).unwrap();
+            let all = Discrepancy::new(Method::Tsvd, "rank", &problem, &spectrum).unwrap();
+            let level = all.level(&spectrum.truncated(spots));
+            assert!(level.accepted(), "{spots}: {level:?}");
+        }
+    }
 }

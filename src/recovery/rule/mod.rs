@@ -7,6 +7,9 @@ pub(super) mod l_curve;
 use super::{Problem, Spectrum};
 use crate::num::linalg::{product, subtract_product};
 
+/// What projections round, relative to Φ.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// Φ in the directions of a spectrum: all that residual and solution depend on.
 pub(in crate::recovery) struct Data<'s> {
     spectrum: &'s Spectrum,
@@ -23,9 +26,15 @@ impl<'s> Data<'s> {
         let coordinates = product(problem.phi, &spectrum.data.transpose());
         let mut outside = problem.phi.clone();
         subtract_product(&mut outside, &coordinates, &spectrum.data);
+        // Of no more spots than directions nothing lies outside but this.
+        let rounding = ROUNDING * problem.phi.norm();
         Data {
             spectrum,
-            outside: outside.norm_squared(),
+            outside: if outside.norm() > rounding {
+                outside.norm_squared()
+            } else {
+                0.0
+            },
             along: coordinates
                 .column_iter()
                 .map(|c| c.norm_squared())

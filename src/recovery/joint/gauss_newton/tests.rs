@@ -387,6 +387,29 @@ fn a_scale_known_to_five_percent_leaves_five_percent() {
     assert!(gains(&levels).settled, "{:?}", gains(&levels));
 }
 
+/// A picture of many reflectances is none of two, and gains that were found with one of two are
+/// wrong: there are no standard errors then. Of a picture of two there are, and they hold it.
+#[test]
+fn gains_of_a_refuted_pattern_leave_no_errors() {
+    let nuisance = Nuisance {
+        frame_gain: Some(0.3),
+        ..Nuisance::default()
+    };
+    for (rho, is_of_two) in [([0.1, 0.9, 0.55, 0.3], false), ([0.2, 0.8, 0.8, 0.2], true)] {
+        let mut small = Small::new();
+        small.rho = DVector::from_column_slice(&rho);
+        let phi = small.drawn(0.3, 0.0, 5);
+        let problem = small.problem(&phi, nuisance);
+        let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+        assert_eq!(found.rests_on_wrong_gains(), !is_of_two);
+        assert_eq!(found.standard_error.is_some(), is_of_two);
+        if let Some(error) = found.standard_error {
+            let off = (&found.reflectance - &small.rho).component_div(&error);
+            assert!(off.amax() < 4.0, "{off}");
+        }
+    }
+}
+
 /// The evidence of factors against the density of the data written out, N(Φ; A x, Σ + …) for a
 /// picture whose levels are given: all patterns summed. It rises where there are factors, by far,
 /// and falls where there are none.
