@@ -7,14 +7,15 @@ use super::columns::Columns;
 use super::error::{PhotographError, refused};
 use super::left_out::LeftOut;
 use super::list::{positions, tables};
+use super::noise::{contradicted, photon_transfer};
 use super::placing::Placing;
 use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, copied, little_left, mirrored, misread, no_light, roughly, rounded, shared,
-    stretched, unsaid,
+    bent, by_own_light, copied, little_left, mirrored, misread, misstated, no_light, roughly,
+    rounded, shared, stretched, unsaid,
 };
 use crate::scene::Scene;
 
@@ -32,7 +33,7 @@ pub fn scene_of(set: &Set, scene: Scene, folder: &Path) -> Result<Scene, Photogr
 }
 
 /// Φcam of `scene` ([`scene_of`]) from the photographs of `set` in `folder`, of one channel where
-/// they are in colour. Files are read once, or twice where the noise is found from repeats; of all
+/// they are in colour. Files are read once, or twice where there are repeats that tell the noise; of all
 /// photographs those of one file and the average of its spot are held at a time.
 ///
 /// # Errors
@@ -56,9 +57,17 @@ pub fn import(
     let placing = Placing::new(set, &scene.camera, shots.size)?;
     let unit = unit(set.watts, &shots.takes)?;
     let given = set.camera_noise()?;
-    let line = match given {
-        Some(_) => None,
-        None => shots.photon_transfer(&mut reader)?,
+    let has_repeats = given.is_none() || set.repeats.is_some_and(|n| n > 1);
+    let repeated = if has_repeats {
+        shots.repeated(&mut reader)?
+    } else {
+        Vec::new()
+    };
+    let contradicted = given.and_then(|noise| contradicted(&repeated, noise));
+    let line = if given.is_some() || repeated.is_empty() {
+        None
+    } else {
+        Some(photon_transfer(repeated, shots.has_offset())?)
     };
     let noise = given.or(line.map(|l| l.noise));
     let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
@@ -78,6 +87,7 @@ pub fn import(
     warnings.extend(rounded(columns.rounded));
     warnings.extend(shared(placing.footprints.shared()));
     warnings.extend(line.and_then(|line| bent(&line)));
+    warnings.extend(contradicted.map(misstated));
     if noise.is_some_and(|n| n.has_offset) {
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
     }

@@ -153,6 +153,29 @@ const ROUNDS: usize = 8;
 /// stay finite where there is no light, no read noise and no rounding.
 const LEAST: f64 = 1e-6;
 
+/// Part of the stated variance, and standard errors, by which repeats contradict it.
+const FAR: f64 = 0.1;
+const SURELY: f64 = 5.0;
+
+/// By how many times the stated variance the repeats scatter, in the mean over groups of like
+/// light, where that is neither 1 nor chance: the means of s²/due, each known to √(2/freedom).
+pub(super) fn contradicted(repeats: &[Repeated], stated: CameraNoise) -> Option<f64> {
+    let mut sorted = repeats.to_vec();
+    sorted.sort_by(|a, b| a.beside.total_cmp(&b.beside));
+    let groups = sorted.chunks(FEWEST).map(group);
+    let (mut sum, mut freedom) = (0.0, 0.0);
+    for own in groups.filter(|g| g.variance > 2.0 * g.rounding) {
+        let due = due(&own, stated, 0.0);
+        if due > 0.0 {
+            sum += own.freedom * own.variance / due;
+            freedom += own.freedom;
+        }
+    }
+    let ratio = sum / freedom;
+    let off = (ratio - 1.0).abs();
+    (off > FAR && off > SURELY * (2.0 / freedom).sqrt()).then_some(ratio)
+}
+
 /// Fits the line to the variances of `repeats`, in groups of like light; each group's variance is
 /// known to the fraction √(2/freedom). Pixels whose variance is below twice that of rounding alone
 /// say nothing of other noise; groups of such are left out. `has_offset` says that the camera's

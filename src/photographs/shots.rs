@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::error::{PhotographError, refused};
-use super::noise::{PhotonTransferFit, Repeated, photon_transfer};
+use super::noise::Repeated;
 use super::pattern::expanded;
 use super::plane::{Averaged, Chosen, Plane, linearised, same_full_scale, same_size};
 use super::read::Reader;
@@ -236,12 +236,12 @@ impl<'a> Shots<'a> {
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }
 
-    /// The photon transfer line of one channel, from all repeated photographs; `None` where none
+    /// The repeats of the pixels of one channel, from all repeated photographs; none where none
     /// are.
-    pub(super) fn photon_transfer(
+    pub(super) fn repeated(
         &self,
         reader: &mut Reader<'_>,
-    ) -> Result<Option<PhotonTransferFit>, PhotographError> {
+    ) -> Result<Vec<Repeated>, PhotographError> {
         let spots = self.spots;
         let pixels = self.size[0] * self.size[1];
         let stride = (spots * pixels).div_ceil(MOST_REPEATED);
@@ -265,9 +265,11 @@ impl<'a> Shots<'a> {
             Ok(())
         };
         self.each_spot(reader, visit)?;
-        if repeated.is_empty() {
-            return Ok(None);
-        }
-        photon_transfer(repeated, self.darks.is_empty()).map(Some)
+        Ok(repeated)
+    }
+
+    /// Whether the camera's offset is in their light.
+    pub(super) fn has_offset(&self) -> bool {
+        self.darks.is_empty()
     }
 }

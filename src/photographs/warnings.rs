@@ -195,6 +195,20 @@ pub(super) fn stretched([columns, rows]: [f64; 2], [u, v]: [f64; 2]) -> Option<S
     })
 }
 
+/// That repeats scatter by `ratio` times the variance that is stated.
+pub(super) fn misstated(ratio: f64) -> String {
+    let (times, which) = if ratio > 1.0 {
+        (ratio.sqrt(), "small")
+    } else {
+        (ratio.sqrt().recip(), "large")
+    };
+    format!(
+        "repeats of one photograph scatter by {} times the variance that `noise` states: the standard errors are {} times too {which}. `gain` is in counts per electron, the variance of the light over the light, and `read_noise` in counts; leave `noise` out to find both from the repeats",
+        figure(ratio, 2),
+        figure(times, 2)
+    )
+}
+
 /// That the variance of repeats is no line.
 pub(super) fn bent(line: &PhotonTransferFit) -> Option<String> {
     let why = if line.noise.has_offset {

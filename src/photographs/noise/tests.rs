@@ -37,6 +37,26 @@ fn repeats(bend: f64) -> Vec<Repeated> {
         .collect()
 }
 
+/// A stated noise is contradicted by as much as the repeats scatter more than it says, or less; the
+/// right one, and one that is off by less than a tenth, are not.
+#[test]
+fn repeats_contradict_a_stated_noise() {
+    let repeats = repeats(0.0);
+    let of = |gain: f64, read: f64| contradicted(&repeats, CameraNoise::new(gain, read).unwrap());
+    assert_eq!([of(0.5, 2.0), of(0.51, 2.0)], [None; 2]);
+    // The mean of (0.5 s + 4)/(g s + σ²) over the light s, 0 to 205 counts.
+    for (gain, read) in [(0.05, 2.0), (2.0, 2.0), (0.5, 20.0)] {
+        let ratio = |s: f64| (0.5 * s + 4.0) / (gain * s + read * read);
+        let want = (0..4096).map(|k| ratio(0.05 * f64::from(k))).sum::<f64>() / 4096.0;
+        let found = of(gain, read).unwrap();
+        assert!(
+            (found / want - 1.0).abs() < 0.05,
+            "{gain} {read}: {found} for {want}"
+        );
+    }
+    assert_eq!(contradicted(&[], CameraNoise::new(1.0, 1.0).unwrap()), None);
+}
+
 #[test]
 fn gain_and_read_noise_come_back() {
     let fit = photon_transfer(repeats(0.0), false).unwrap();
