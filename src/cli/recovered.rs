@@ -90,11 +90,12 @@ pub(super) fn tell(objects: &[RecoveredObject], json: bool) -> Result<Outcome, F
 /// known, what the photographs determine of each element in determined.npy and determined.png, and
 /// overview.png with all of them side by side (no pictures of elements that are the triangles of a
 /// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
-/// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
-/// METHOD.light.npy (nv × nu, probability to be light), METHOD.alike.npy and
-/// METHOD.alike.stderr.npy (nv × nu, the mean where neighbours may be alike), METHOD.covariance.npy
-/// and METHOD.resolution.npy (own elements × elements of all surfaces), METHOD.bias.npy (nv × nu),
-/// METHOD.lower.npy and METHOD.upper.npy where bands were asked for; what was chosen and found
+/// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu, inf where
+/// the photographs do not determine an element), METHOD.light.npy (nv × nu, probability to be
+/// light), METHOD.alike.npy and METHOD.alike.stderr.npy (nv × nu, the mean where neighbours may be
+/// alike), METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all
+/// surfaces), METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were
+/// asked for; what was chosen and found
 /// beside it in METHOD.choice.json, METHOD.frame_constant.npy and METHOD.glare.npy (1 × spots),
 /// METHOD.frame_gain.npy (2 × spots: ε, its standard errors) and METHOD.background.npy (pixels ×
 /// 1); NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden

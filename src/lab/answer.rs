@@ -212,7 +212,8 @@ fn certainty(pictures: &[&RecoveredObject]) -> Claim {
 /// The standard errors of all elements; of pictures of two values how many elements are decided.
 fn error(pictures: &[&RecoveredObject]) -> String {
     let errors = pictures.iter().filter_map(|r| r.standard_error.as_ref());
-    let errors: Vec<f64> = errors.flatten().copied().collect();
+    let (errors, unbounded): (Vec<f64>, Vec<f64>) =
+        errors.flatten().copied().partition(|s| s.is_finite());
     let light = pictures.iter().filter_map(|r| r.light.as_ref());
     let light: Vec<f64> = light.flatten().copied().collect();
     let patterns = pictures.iter().filter_map(|r| r.patterns.as_ref());
@@ -225,6 +226,12 @@ fn error(pictures: &[&RecoveredObject]) -> String {
             "standard error {} an element (root mean square), {} at most",
             figure(root_mean_square(&errors), 2),
             figure(most, 2)
+        ));
+    }
+    if !unbounded.is_empty() {
+        told.push(format!(
+            "no finite standard error of {} elements, which the photographs do not determine",
+            unbounded.len()
         ));
     }
     if !light.is_empty() {

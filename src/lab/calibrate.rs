@@ -9,7 +9,8 @@
 //! if that is larger: u_c is what frame c, or one of 4 × 4 blocks of pixels, adds to the slope, so
 //! that what the model lacks counts once a frame or block (Huber 1967; Liang and Zeger 1986). Where
 //! the likelihood itself, the others following, falls by ½ farther out, that is the error. The
-//! picture's own covariance is P + (RX) cov θ (RX)ᵀ.
+//! picture's own covariance is P + (RX) cov θ (RX)ᵀ. What a picture of twice as many elements along
+//! each side would move is an error too where the photographs ask for it.
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -40,6 +41,7 @@ mod calibration;
 mod common;
 mod descent;
 mod describe;
+mod elements;
 mod field;
 mod finish;
 mod geometry;
@@ -52,6 +54,7 @@ mod tests;
 
 pub use calibration::{Calibrated, Calibration, Starts};
 pub use descent::Stage;
+pub use elements::FinerElements;
 pub use identified::{Direction, Identified};
 pub use profile::Profile;
 
@@ -135,6 +138,11 @@ impl CalibrationPlan {
     ) -> Result<Calibration, LabError> {
         let known = Certainty::new(Errors::Independent, self.replicates);
         let stderr = photographs.stderr;
+        if stderr.is_some_and(|all| all.iter().all(|s| *s == 0.0)) {
+            return Err(LabError::Unsuited(
+                "every standard error is 0, so that no entry counts; give those of the photographs, or none where their noise is not known",
+            ));
+        }
         let of = |own| Refined::of(photographs.phi, own, known, photographs.left_out);
         let refined = stderr.map(of);
         let known = refined.as_ref().map_or(known, |own| own.certainty);
@@ -213,7 +221,7 @@ impl CalibrationPlan {
             });
             (control.progress)(1);
         }
-        self.finish(&problem, (&model, told, untold), (ends, known))
+        self.finish(&problem, (&model, told, untold), (ends, known), control)
     }
 
     fn parameters(&self, scene: &Scene) -> Result<(Vec<Parameter>, Vec<Option<f64>>), LabError> {

@@ -27,7 +27,7 @@ const BEYOND: f64 = 3.0;
 const GAP: f64 = 0.1;
 
 /// A probability below which exactly two reflectances are not to be taken for granted.
-const UNLIKELY: f64 = 0.5;
+const UNLIKELY: f64 = Patterns::UNLIKELY;
 /// A probability below which a pattern is one of many.
 const ONE_OF_MANY: f64 = 0.05;
 
@@ -52,7 +52,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         on_bounds(found),
         stopped(found),
         unfinished(found, judged),
-        drifting(found),
+        drifting(found, judged),
         without_bands(found),
         unsampled(found),
         spread(found),
@@ -190,6 +190,14 @@ fn spread(found: &Recovered) -> Option<String> {
     let of = found.patterns.as_ref()?;
     let assumed = of.assumed();
     let exact = assumed.exact.filter(|p| *p < UNLIKELY)?;
+    if found.rests_on_wrong_gains() {
+        return Some(format!(
+            "if {}, exactly two reflectances have probability {}, and the gains were found with them: \
+             pattern and levels are NOT to be believed, and there are no standard errors. Believe joint-gp",
+            beforehand(of),
+            figure(exact, 2)
+        ));
+    }
     Some(format!(
         "if {}, exactly two reflectances have probability {}: elements that differ from theirs by about {} \
          explain the photographs better. Believe the standard errors, not the pattern, or joint-gp{}",

@@ -129,6 +129,11 @@ impl LocatedPlan {
             Ok::<_, LabError>(found.into_iter().flatten().collect::<Vec<Place>>())
         };
         let coarse = places(self.range, self.steps, false)?;
+        if coarse.is_empty() {
+            return Err(LabError::Unsuited(
+                "the scene allows no place between these two; an angle needs a hinge, and there is none where hidden surface and wall are parallel",
+            ));
+        }
         let first = place::best(coarse.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
         let mut step = (self.range[1] - self.range[0]) / (self.steps - 1) as f64;
         let mut middle = coarse[first].size;

@@ -227,7 +227,8 @@ pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
 pub use calibrate::{
-    Calibrated, Calibration, CalibrationPlan, Direction, Free, Identified, Profile, Stage, Starts,
+    Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free, Identified, Profile,
+    Stage, Starts,
 };
 pub use certainty::{Certainty, Errors};
 pub use chosen::{Beside, Chosen, Ended};

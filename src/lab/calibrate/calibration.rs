@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Direction, Identified, Profile, Stage};
+use super::{Direction, FinerElements, Identified, Profile, Stage};
 use crate::lab::located::Grid;
 use crate::recovery::ErrorField;
 
@@ -28,6 +28,9 @@ pub struct Calibrated {
     /// How far a finer rule of integration would move it: a part of the error where light is
     /// integrated, told where it is taken by centres.
     pub by_rule: Option<f64>,
+    /// How far finer elements of the picture move it, where the photographs ask for them: a part of
+    /// the error.
+    pub by_elements: Option<f64>,
     /// What the photographs tell of it at the start.
     pub identified: Identified,
     /// Its profile; absent of gains and of more than twelve parameters.
@@ -54,6 +57,9 @@ pub struct Calibration {
     pub found: Vec<Calibrated>,
     /// Whether light is integrated: then what a finer rule moves is counted in the errors.
     pub is_integrated: bool,
+    /// What elements of half the size say; absent where they were not tried: of more than 100
+    /// elements, or surfaces of different numbers.
+    pub finer_elements: Option<FinerElements>,
     /// Combinations that the photographs alone do not tell.
     pub untold: Vec<Direction>,
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these

@@ -1,6 +1,7 @@
 //! What is said of a calibration.
 
 mod directions;
+mod picture;
 mod tables;
 
 use super::{Calibrated, Calibration};
@@ -132,9 +133,14 @@ impl Calibration {
         }
         match self.p {
             Some(p) if p >= SIGNIFICANCE => format!(
-                "With it the photographs fit: χ²/dof {} (p = {}). The errors are those of the noise.",
+                "With it the photographs fit: χ²/dof {} (p = {}).{}",
                 figure(self.misfit, 3),
-                figure(p, 2)
+                figure(p, 2),
+                if self.asks_for_elements() {
+                    ""
+                } else {
+                    " The errors are those of the noise."
+                }
             ),
             Some(_) if self.is_coarse() => format!(
                 "Light is not integrated as finely as these photographs ask for, so that whether they \
@@ -193,47 +199,13 @@ impl Calibration {
         )
     }
 
-    fn picture(&self) -> String {
-        let scale = if self.scale == 1.0 {
-            String::new()
-        } else {
-            format!(" The scale of all light is {}.", figure(self.scale, 4))
-        };
-        let length = if self.length == 0.0 {
-            "elements that know nothing of each other".to_owned()
-        } else {
-            format!("elements alike over {}", figure(self.length, 2))
-        };
-        let taken = if self.field.is_some() {
-            ", if what is left over is such errors"
-        } else if self.is_more_than_noise() {
-            ", if what is left over were independent noise: it need not be, and then the picture and its \
-             errors claim too much (`phicam locate` draws one that the photographs bear out)"
-        } else {
-            ""
-        };
-        let truth = match (self.mtf_raw, self.correlation) {
-            (None, None) => String::new(),
-            (mtf, correlation) => format!(
-                " Against the scene's own picture: MTF raw {}, correlation {}.",
-                perhaps(mtf, 3),
-                perhaps(correlation, 3)
-            ),
-        };
-        format!(
-            "The picture is the mean of all that fit, with spread {} and {length}, not bounded; {} \
-             of its directions are determined{taken}. Its errors include those of the geometry.{truth}{scale}",
-            figure(self.spread, 2),
-            figure(self.directions, 3)
-        )
-    }
-
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![self.fit()];
         notes.extend(self.few_replicates());
         if self.follows_entries {
             notes.push(format!("Beware: {FOLLOWS_ENTRIES}."));
         }
+        notes.push(self.elements());
         notes.extend([self.searched(), self.picture()]);
         let far = self.geometry().filter_map(|f| {
             let prior = f.prior?;
@@ -298,7 +270,7 @@ impl Describe for Calibration {
         Finding {
             title: format!("The geometry, from the photographs: {}", self.scene),
             tone: match self.is_found() {
-                true if self.is_coarse() => Tone::Plain,
+                true if self.is_coarse() || self.asks_for_elements() => Tone::Plain,
                 true => Tone::Good,
                 false => Tone::Bad,
             },

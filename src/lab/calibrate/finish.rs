@@ -15,6 +15,7 @@ use crate::metrics::{correlation, mtf_raw};
 use crate::model::MatrixModel;
 use crate::num::linalg::Cholesky;
 use crate::store::digest_of;
+use crate::transport::Control;
 
 /// Starts that end within so many standard errors of each other agree.
 const AGREE: f64 = 1.0;
@@ -25,6 +26,7 @@ impl CalibrationPlan {
         problem: &Problem<'_>,
         (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
         (mut ends, known): (Vec<End>, Certainty),
+        control: Control<'_>,
     ) -> Result<Calibration, LabError> {
         ends.sort_by(|a, b| a.total.total_cmp(&b.total));
         let alone = ends.iter().map(|end| end.without);
@@ -56,6 +58,7 @@ impl CalibrationPlan {
         let scene = problem.geometry.scene;
         let names = self.names(problem);
         let finer = problem.finer(best, &covariance)?;
+        let elements = problem.finer_elements(model, best, control)?;
         let is_integrated =
             problem.geometry.is_obstructed() || self.integration == Integration::Quadrature;
         let mut found: Vec<Calibrated> = Vec::new();
@@ -74,8 +77,10 @@ impl CalibrationPlan {
             let noise = others
                 .into_iter()
                 .fold(by_curvature.max(by_profile), f64::max);
-            let rule = rule.unwrap_or(0.0);
-            let stderr = (noise * noise + rule * rule).sqrt();
+            let by_elements = elements.as_ref().and_then(|e| e.moved.get(k));
+            let by_elements = by_elements.map(|moved| moved.abs());
+            let [rule, even] = [rule, by_elements].map(|moved| moved.unwrap_or(0.0));
+            let stderr = (noise * noise + rule * rule + even * even).sqrt();
             let more = stderr / by_curvature;
             (0..whole.nrows()).for_each(|j| {
                 whole[(k, j)] *= more;
@@ -92,6 +97,7 @@ impl CalibrationPlan {
                 by_frames,
                 by_blocks,
                 by_rule,
+                by_elements,
                 identified,
                 profile,
             });
@@ -128,6 +134,7 @@ impl CalibrationPlan {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
             is_integrated,
+            finer_elements: elements,
             untold,
             replicates: known.replicates.filter(|_| is_noise_known),
             follows_entries: known.follows_entries,

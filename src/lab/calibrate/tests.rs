@@ -438,6 +438,52 @@ material = { lambertian = 0.0 }
     }
 }
 
+/// Errors of 0 weigh nothing: whatever is photographed fits, and so it is refused.
+#[test]
+fn errors_that_are_all_zero_are_refused() {
+    let scene = small("bench", 4);
+    let (phi, stderr) = photographs(&scene, 2, 0.01, 1);
+    let zero = stderr * 0.0;
+    let found =
+        plan(&["hidden.normal"], 2).calibrate(&scene, &unexplained(&phi, &zero), Control::none());
+    let said = found.unwrap_err().to_string();
+    assert!(said.contains("every standard error is 0"), "{said}");
+}
+
+/// A picture that changes within the elements bends the geometry: twice as many are asked for, the
+/// error counts what they move, and knows the truth again. A picture of the elements asks for none.
+#[test]
+fn a_picture_that_is_not_even_asks_for_finer_elements() {
+    let scene = small("bench", 6);
+    let extent = crate::model::Extent::UNOBSTRUCTED;
+    let board = scene.with_checkerboard(2);
+    let phi = crate::model::converged(&board, Kernel::Physical, extent)
+        .unwrap()
+        .phi;
+    for (elements, is_asked) in [(2, false), (1, true)] {
+        let stderr = &phi * 3e-3;
+        let mut random = normal(3);
+        let noisy = phi.zip_map(&stderr, |x, s| x + s * random()[0]);
+        let how = CalibrationPlan {
+            integration: Integration::Quadrature,
+            ..plan(&["hidden.normal", "hidden.pitch"], elements)
+        };
+        let found = how.calibrate(&scene, &unexplained(&noisy, &stderr), Control::none());
+        let found = found.unwrap();
+        let finer = found.finer_elements.as_ref().unwrap();
+        assert_eq!(finer.elements, [2 * elements; 2]);
+        assert_eq!(finer.is_asked(), is_asked, "{finer:?}");
+        for own in &found.found {
+            assert_eq!(own.by_elements.is_some(), is_asked);
+            assert!(own.value.abs() < 4.0 * own.stderr, "{own:?}");
+            let bent = own.value.abs() > 4.0 * own.by_curvature;
+            assert!(!bent || is_asked, "{own:?}");
+        }
+        let said = format!("{:?}", found.describe());
+        assert_eq!(said.contains("--elements 2x2"), is_asked);
+    }
+}
+
 /// Wide spots past a thin rod, photographs traced, which knows of no elements: the stated error
 /// knows what their light is not integrated to, and no geometry is refuted for it.
 #[test]

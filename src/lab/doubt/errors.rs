@@ -106,22 +106,29 @@ pub(super) fn unseen(found: &Recovered, judged: &Judged) -> Option<String> {
     ))
 }
 
-/// Standard errors of a shortest solution that are less than half of what any method can know: they
-/// are those of the directions that the photographs show, and the others are taken for 0.
+/// Elements that a method without bounds gives no finite standard error, or one of less than half
+/// of what any method can know: directions that the photographs do not show are taken for 0.
 pub(super) fn undetermined(found: &Recovered, judged: &Judged) -> Option<String> {
-    let shortest = matches!(found.method, Method::JointUnbounded | Method::Pinv);
-    let known = judged.determined.as_ref().filter(|_| shortest)?;
     let stated = found.standard_error.as_ref()?;
-    let shares = known.shares.iter().zip(stated.iter());
-    let hidden = shares.filter(|(share, error)| {
-        **share < DETERMINED && **error < 0.5 * HALF * (1.0 - **share).sqrt()
-    });
-    let count = hidden.count();
+    let shortest = matches!(found.method, Method::JointUnbounded | Method::Pinv);
+    let known = judged.determined.as_ref().filter(|_| shortest);
+    let too_small = |j: usize, error: f64| {
+        let share = known.map_or(1.0, |known| known.shares[j]);
+        share < DETERMINED && error < 0.5 * HALF * (1.0 - share).sqrt()
+    };
+    let each = || stated.iter().copied().enumerate();
+    let unbounded = each().filter(|(_, error)| error.is_infinite()).count();
+    let hidden = each().filter(|(j, error)| too_small(*j, *error)).count();
+    let count = unbounded + hidden;
+    let said = match (unbounded, hidden) {
+        (_, 0) => "they have no finite standard error",
+        (0, _) => "the standard errors leave out what cannot be seen",
+        _ => "standard errors are infinite or leave out what cannot be seen",
+    };
     (count > 0).then(|| {
         format!(
-            "the photographs do not determine {count} of {} elements, of which this is the smallest picture \
-             that explains them: the standard errors leave out what cannot be seen. Use joint-gp, fewer \
-             --elements, or more photographs",
+            "the photographs do not determine {count} of {} elements, and this picture is one of \
+             many that explain them: {said}. Use joint-gp, fewer --elements, or more photographs",
             stated.len()
         )
     })

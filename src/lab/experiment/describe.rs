@@ -117,7 +117,7 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
             }),
         ),
         (
-            "at no glare by".to_owned(),
+            "not even at the least glare studied by".to_owned(),
             names(&|t| t.glare.is_none().then(|| name(t))),
         ),
     ];

@@ -31,7 +31,12 @@ impl Tolerance {
             Some(format!("{} off by {} {}", p.name, figure(size, 2), p.unit))
         };
         let units = self.parameters.chunk_by(|a, b| a.unit == b.unit);
-        let found = if count == 0 {
+        let found = if !self.shows_pattern() {
+            let own = self.own.map_or(String::new(), |own| figure(own, 3));
+            format!(
+                "that is less than half of the picture's own {own}, and what errors of geometry lose of it is not told: less noise shows it"
+            )
+        } else if count == 0 {
             "no error of geometry that was studied halves its MTF".to_owned()
         } else {
             format!(
@@ -57,11 +62,15 @@ impl Tolerance {
     /// What has to be measured how well for the MTF that is wished for: section 5.4 of the
     /// published study.
     fn needed(&self) -> String {
-        let wished = figure(self.wished, 2);
-        let Some(mtf) = self.mtf else {
+        let wished = match self.own {
+            Some(own) if own < 1.0 => format!("{} of the picture's own", figure(self.wished, 2)),
+            _ => figure(self.wished, 2),
+        };
+        let both = self.mtf.zip(self.limit());
+        let Some((mtf, limit)) = both else {
             return "What must be measured how well, no MTF tells here. What light itself tells of the geometry `phicam calibrate` finds.".to_owned();
         };
-        if mtf <= self.wished {
+        if mtf <= limit {
             return format!(
                 "An MTF of {wished} is not reached with the right geometry either: less noise is needed first, not a better measurement."
             );
@@ -100,7 +109,9 @@ impl Tolerance {
         let size = |x: f64| format!("{} {}", figure(x, 2), thing.unit);
         match (thing.lost_at, thing.rows.last()) {
             (Some(at), _) => size(at),
-            (None, Some(last)) if holds(last) == Some(true) => format!("> {}", size(last.size)),
+            (None, Some(last)) if self.shows_pattern() && holds(last) == Some(true) => {
+                format!("> {}", size(last.size))
+            }
             _ => "–".to_owned(),
         }
     }
@@ -242,6 +253,7 @@ mod tests {
             scene_hash: String::new(),
             noise: 0.01,
             wished: 0.9,
+            own: Some(1.0),
             mtf: Some(0.99),
             parameters: vec![
                 thing("hinge angle", "deg", 0.1, Some(0.7)),
@@ -262,6 +274,31 @@ mod tests {
         assert!(
             note.contains("hinge angle to 0.35 deg")
                 && note.contains("No size tried here matters of S2 along u"),
+            "{note}"
+        );
+        // Less than half of the picture's own modulation is no pattern to lose; a picture of greys
+        // is held to its own.
+        let faint = Tolerance {
+            mtf: Some(0.4),
+            ..found.clone()
+        };
+        let said = faint.describe();
+        assert!(said.sentence.contains("is not told"), "{}", said.sentence);
+        assert!(
+            said.tables[0]
+                .rows
+                .iter()
+                .all(|r| r[6] != "> 1.0 in".into())
+        );
+        let greys = Tolerance {
+            own: Some(0.42),
+            ..faint
+        };
+        let said = greys.describe();
+        assert!(said.sentence.contains("3 of 5 errors"), "{}", said.sentence);
+        let note = &said.notes[0];
+        assert!(
+            note.contains("0.90 of the picture's own, each alone"),
             "{note}"
         );
     }

@@ -45,10 +45,28 @@ pub struct Tolerance {
     pub scene_hash: String,
     /// Noise of the photographs, relative to each entry.
     pub noise: f64,
-    /// Raw MTF that is wished for.
+    /// MTF that is wished for, of the picture's own.
     pub wished: f64,
+    /// Raw MTF of the picture itself; absent where it has no contrast.
+    pub own: Option<f64>,
     /// Raw MTF with the right geometry.
     pub mtf: Option<f64>,
     /// Each thing.
     pub parameters: Vec<Sensitivity>,
+}
+
+impl Tolerance {
+    /// Part of the picture's own MTF below which an MTF shows no pattern.
+    const PATTERN: f64 = 0.5;
+
+    /// Whether the right geometry shows the pattern, so that it can be lost.
+    pub(super) fn shows_pattern(&self) -> bool {
+        let both = self.mtf.zip(self.own);
+        both.is_some_and(|(mtf, own)| mtf >= Self::PATTERN * own)
+    }
+
+    /// The raw MTF that is wished for.
+    pub(super) fn limit(&self) -> Option<f64> {
+        self.own.map(|own| own * self.wished)
+    }
 }

@@ -37,7 +37,7 @@ pub(in crate::lab) const STUDY: Registered = Registered {
             ),
         Opt::number(
             "mtf",
-            "Raw MTF that is wished for: how well must each thing be known for it",
+            "MTF that is wished for, of the picture's own: how well must each thing be known for it",
         )
         .or("0.9")
         .rule(
@@ -86,7 +86,7 @@ pub enum Placed {
 
 impl ToleranceTasks {
     /// The study of a scene, of photographs whose noise relative to each entry is `noise`; `wished`
-    /// is the MTF for which everything is to be known well enough.
+    /// is the MTF, of the picture's own, for which everything is to be known well enough.
     pub fn new(scene: &Scene, noise: f64, wished: f64) -> Self {
         Self {
             scene: scene.clone(),
@@ -177,26 +177,35 @@ impl Study for ToleranceTasks {
                 Placed::Wrong(found) => placed.push(found),
             }
         }
-        let of = |(what, own): (&Misplaced, &[Option<Misplacement>])| {
-            let rows: Vec<Misplacement> = own.iter().flatten().copied().collect();
-            (!rows.is_empty()).then(|| Sensitivity {
-                name: what.name.to_owned(),
-                unit: unit(what, &self.scene).1.to_owned(),
-                by_derivative: by_derivative(&self.scene, what),
-                needed: falls_through(right, &rows, self.wished),
-                lost_at: right.and_then(|m| falls_through(right, &rows, PATTERN * m)),
-                rows,
-            })
-        };
-        let things = ALL.iter().zip(placed.chunks(SIZES.len()));
-        Ok(Tolerance {
+        let divided = self.scene.hidden().flat_map(|(_, s)| s.divided(s.elements));
+        let picture: Vec<f64> = divided.map(|e| e.albedo).collect();
+        let mut found = Tolerance {
             scene: self.scene.name.clone(),
             scene_hash: self.scene.hash.clone(),
             noise: self.noise,
             wished: self.wished,
+            own: mtf_raw(&picture, &picture),
             mtf: right,
-            parameters: things.filter_map(of).collect(),
-        })
+            parameters: Vec::new(),
+        };
+        let shown = right.filter(|_| found.shows_pattern());
+        let of = |(what, own): (&Misplaced, &[Option<Misplacement>])| {
+            let rows: Vec<Misplacement> = own.iter().flatten().copied().collect();
+            let through = |limit: f64| falls_through(shown?, &rows, limit);
+            let needed = found.limit().and_then(through);
+            let lost_at = shown.and_then(|right| through(0.5 * right));
+            (!rows.is_empty()).then(|| Sensitivity {
+                name: what.name.to_owned(),
+                unit: unit(what, &self.scene).1.to_owned(),
+                by_derivative: by_derivative(&self.scene, what),
+                needed,
+                lost_at,
+                rows,
+            })
+        };
+        let things = ALL.iter().zip(placed.chunks(SIZES.len()));
+        found.parameters = things.filter_map(of).collect();
+        Ok(found)
     }
 }
 
@@ -239,13 +248,12 @@ fn by_derivative(scene: &Scene, what: &Misplaced) -> Option<[f64; 2]> {
     Some([(change / square).sqrt(), (left / square).sqrt()])
 }
 
-/// Below this an MTF shows no pattern.
-const PATTERN: f64 = 0.5;
-
 /// Where the MTF first falls through `limit`, interpolated in log size; none where it is below that
-/// with the right geometry, or where that shows no pattern.
-fn falls_through(right: Option<f64>, rows: &[Misplacement], limit: f64) -> Option<f64> {
-    let right = right.filter(|m| *m >= PATTERN && *m > limit)?;
+/// with the right geometry.
+fn falls_through(right: f64, rows: &[Misplacement], limit: f64) -> Option<f64> {
+    if right <= limit {
+        return None;
+    }
     let mut before = (rows.first()?.size * 0.1, right);
     for row in rows {
         let mtf = row.mtf?;

@@ -66,9 +66,15 @@ fn surface(r: &RecoveredObject, named: bool) -> String {
     let caption = format!("recovered by {}", r.method);
     let found = picture("what was recovered", &r.reflectance, &grey, &caption);
     let errors = r.standard_error.as_ref();
-    let most = errors.map_or(0.0, |all| all.iter().copied().fold(0.0, f64::max));
+    let finite = |all: &Vec<f64>| {
+        all.iter()
+            .copied()
+            .filter(|x| x.is_finite())
+            .fold(0.0, f64::max)
+    };
+    let most = errors.map_or(0.0, finite);
     // An error that all elements share is a number, told beside the picture.
-    let differ = |all: &&Vec<f64>| all.iter().any(|x| *x < SAME * most);
+    let differ = |all: &&Vec<f64>| all.iter().any(|x| *x < SAME * most || x.is_infinite());
     let sure = match (errors.filter(differ), &r.determined_share) {
         (Some(errors), _) => {
             let scale = Scale::between(Map::Viridis, Law::Linear, [0.0, most]);

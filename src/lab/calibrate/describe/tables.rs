@@ -41,6 +41,10 @@ impl Calibration {
                     (Column::number("by finer rule", "by_rule", "", 2), |f| {
                         f.by_rule.into()
                     }),
+                    (
+                        Column::number("by finer elements", "by_elements", "", 2),
+                        |f| f.by_elements.into(),
+                    ),
                 ],
             )
         }

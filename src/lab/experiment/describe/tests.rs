@@ -56,9 +56,9 @@ fn the_findings_are_told_in_words() {
     assert!(found.words[0].contains("gets 30 fW from `board`; 50 times"));
     assert!(found.words[1].ends_with("modulation of −0.10, `joint` 0.90."));
     assert!(found.words[2].ends_with("0.40: glare is not the only cause of its failure."));
-    assert!(
-        found.words[3].contains("1.0 times the signal, by `joint`; at no glare by `published`;")
-    );
+    assert!(found.words[3].contains(
+        "1.0 times the signal, by `joint`; not even at the least glare studied by `published`;"
+    ));
     let said = found.describe();
     assert!(said.sentence.ends_with("0.90.") && said.notes.len() == 2);
     let file = said.tables.iter().find(|t| t.file.is_some()).unwrap();

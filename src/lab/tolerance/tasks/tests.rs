@@ -50,9 +50,9 @@ fn the_limit_is_interpolated_in_log_size() {
         mtf: Some(mtf),
     };
     let rows = [row(0.01, 1.0), row(0.1, 0.75), row(1.0, 0.25)];
-    assert!((falls_through(Some(1.0), &rows, 0.5).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
-    assert_eq!(falls_through(Some(1.0), &rows[..2], 0.5), None);
-    assert_eq!(falls_through(Some(0.3), &rows, 0.15), None);
+    assert!((falls_through(1.0, &rows, 0.5).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
+    assert_eq!(falls_through(1.0, &rows[..2], 0.5), None);
+    assert_eq!(falls_through(0.3, &rows, 0.5), None);
 }
 
 /// With hardly any noise the right geometry recovers the board: by its elements' centres, too

@@ -1,0 +1,68 @@
+//! What is said of the picture of a calibration.
+
+use crate::lab::calibrate::{Calibration, FinerElements};
+use crate::num::digits::{figure, perhaps};
+
+impl Calibration {
+    /// Whether the photographs ask for a finer picture.
+    pub(super) fn asks_for_elements(&self) -> bool {
+        let finer = self.finer_elements.as_ref();
+        finer.is_some_and(FinerElements::is_asked)
+    }
+
+    /// Whether the picture may be even within its elements.
+    pub(super) fn elements(&self) -> String {
+        let counts = self.grids.first().map_or([0; 2], |g| g.count);
+        let [own, twice] = [1, 2].map(|n| counts.map(|count| (n * count).to_string()).join(" × "));
+        let even = format!("The picture is taken as even within each of {own} elements");
+        match &self.finer_elements {
+            None => format!(
+                "{even}; whether the photographs ask for finer ones was not tried. If it is not, the geometry \
+                 bends for it, and its errors do not know."
+            ),
+            Some(finer) if finer.is_asked() => format!(
+                "{even}, and the photographs ASK FOR FINER ONES: {twice} are e^{} times as likely. What they \
+                 move is counted in the errors. Use --elements {}.",
+                figure(finer.log_likelier, 2),
+                finer.elements.map(|n| n.to_string()).join("x")
+            ),
+            Some(_) => format!("{even}; the photographs do not ask for {twice}."),
+        }
+    }
+
+    /// What it assumes, and how good it is.
+    pub(super) fn picture(&self) -> String {
+        let scale = if self.scale == 1.0 {
+            String::new()
+        } else {
+            format!(" The scale of all light is {}.", figure(self.scale, 4))
+        };
+        let length = if self.length == 0.0 {
+            "elements that know nothing of each other".to_owned()
+        } else {
+            format!("elements alike over {}", figure(self.length, 2))
+        };
+        let taken = if self.field.is_some() {
+            ", if what is left over is such errors"
+        } else if self.is_more_than_noise() {
+            ", if what is left over were independent noise: it need not be, and then the picture and its \
+             errors claim too much (`phicam locate` draws one that the photographs bear out)"
+        } else {
+            ""
+        };
+        let truth = match (self.mtf_raw, self.correlation) {
+            (None, None) => String::new(),
+            (mtf, correlation) => format!(
+                " Against the scene's own picture: MTF raw {}, correlation {}.",
+                perhaps(mtf, 3),
+                perhaps(correlation, 3)
+            ),
+        };
+        format!(
+            "The picture is the mean of all that fit, with spread {} and {length}, not bounded; {} \
+             of its directions are determined{taken}. Its errors include those of the geometry.{truth}{scale}",
+            figure(self.spread, 2),
+            figure(self.directions, 3)
+        )
+    }
+}
