@@ -462,6 +462,10 @@ def recover(
     return first
 
 
+#: Kernel, integration and occlusion unless given.
+_HOW: tuple[Kernel, Integration, bool] = ("physical", "quadrature", True)
+
+
 def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -> Model:
     """The model that photographs are inverted by."""
     kernel, integration, occlusion = how
@@ -470,6 +474,11 @@ def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -
         raise InputError(f"nothing says what the photographs are inverted by\n  cure: {cure}")
     if isinstance(given, Scene):
         return model(given, kernel=kernel, elements=elements, occlusion=occlusion, integration=integration)
+    own = (given.kernel, given.integration, given.occlusion) if isinstance(given, Model) else _HOW
+    if not isinstance(given, str) and how not in (_HOW, own):
+        what = "a Model, which is made already" if isinstance(given, Model) else "matrices, which have none"
+        cure = "make the model with them (phicam.model), or leave them out"
+        raise InputError(f"kernel, integration and occlusion are given with {what}\n  cure: {cure}")
     if isinstance(given, Model):
         if elements is not None:
             raise InputError("elements is given with a Model\n  cure: make the model of as many elements")
