@@ -52,13 +52,20 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         on_bounds(found),
         stopped(found),
         unfinished(found, judged),
-        drifting(found, judged),
+        drifting(found).filter(|_| !is_at_fault(judged)),
         without_bands(found),
         unsampled(found),
         spread(found),
         one_of_many(found, judged),
     ];
     every.into_iter().flatten().collect()
+}
+
+/// Whether the picture does not explain the photographs, and others do: gains that were found with
+/// it say nothing of the photographs.
+fn is_at_fault(judged: &Judged) -> bool {
+    let refuted = judged.fit.as_ref().is_some_and(|fit| !fit.fits);
+    refuted && judged.best.as_ref().is_some_and(|best| best.possible.fits)
 }
 
 /// A search that was stopped.

@@ -4,7 +4,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::evidence::FIT_LEVEL;
-use super::fit::Judged;
 use crate::num::digits::{figure, significant};
 use crate::recovery::{self, Recovered};
 
@@ -112,13 +111,8 @@ pub(super) fn words(of: &Gains) -> String {
 }
 
 /// Factors that differ from 1 by more than they were said to, or that did not settle.
-/// Of a picture that does not explain the photographs, where others do, they say nothing.
-pub(super) fn drifting(found: &Recovered, judged: &Judged) -> Option<String> {
+pub(super) fn drifting(found: &Recovered) -> Option<String> {
     let gains = found.nuisance.as_ref()?.gains.as_ref()?;
-    let is_refuted = judged.fit.as_ref().is_some_and(|fit| !fit.fits);
-    if is_refuted && judged.best.as_ref().is_some_and(|best| best.possible.fits) {
-        return None;
-    }
     let frames = gains.frames.as_ref();
     if let Some(p) = frames
         .and_then(recovery::Deviations::probability)

@@ -10,20 +10,22 @@ use std::f64::consts::TAU;
 use super::overhang::to_its_end;
 use super::spot::{density, lit, power_within, radial, reach, rings};
 use super::wall_point::{self, WallPoint};
-use crate::geometry::{Basis, Ray};
+use crate::geometry::{Basis, Ray, Shape};
 use crate::num::quadrature::Rule;
 use crate::scene::{Profile, Scene};
 
-/// Places of a spot's rim at which an edge is looked for.
+/// Places of a spot's rim at which an edge is looked for, at least, and of those of a line.
 const RIM: usize = 64;
+const OF_PLACES: usize = 2;
 /// Lines from the middle of a spot that is cut, at least, halvings of the angle between two of
 /// them, and what they may differ by.
 const LINES: usize = 128;
 const TURNS: u32 = 8;
 const EVEN: f64 = 1e-3;
-/// Places along a line at which light and shadow are told apart, and halvings of the distance of
-/// two that differ.
-const PLACES: usize = 64;
+/// Places along a line at which light and shadow are told apart, fewest and most, and of the
+/// narrowest thing in the way; halvings of the distance of two that differ.
+const PLACES: [usize; 2] = [64, 2048];
+const OF_NARROWEST: f64 = 4.0;
 const HALVINGS: u32 = 24;
 
 /// A part of a spot, as it lights the wall with nothing in the way, and as what arrives of it does.
@@ -51,12 +53,17 @@ impl Lit {
 /// one whose nodes and rim all are reached or all are not, all arrives or nothing.
 pub(super) fn reached(scene: &Scene, nodes: usize) -> Vec<Vec<Lit>> {
     let profile = scene.laser.profile;
+    let places = places(scene, reach(profile));
     let is_free = |w: &WallPoint| {
         let ray = Ray::between(scene.laser.position, w.position);
         ray.is_some_and(|ray| !scene.bvh().blocked(&ray, [None, w.surface]))
     };
+    let around = match places {
+        few if few == PLACES[0] => RIM,
+        many => OF_PLACES * many,
+    };
     let rim = |k: usize| {
-        let (sin, cos) = libm::sincos(TAU * k as f64 / RIM as f64);
+        let (sin, cos) = libm::sincos(TAU * k as f64 / around as f64);
         [cos, sin].map(|x| reach(profile) * x)
     };
     let spot = |(l, points): (usize, Vec<WallPoint>)| -> Vec<Lit> {
@@ -69,7 +76,7 @@ pub(super) fn reached(scene: &Scene, nodes: usize) -> Vec<Vec<Lit>> {
         };
         let is_cut = points.len() > 1
             && (points.iter().any(|point| is_free(point) != arrives)
-                || (0..RIM).any(|k| is_free(&at(rim(k), 1.0)) != arrives));
+                || (0..around).any(|k| is_free(&at(rim(k), 1.0)) != arrives));
         if !is_cut {
             let points = to_its_end(scene, l, profile, nodes).unwrap_or(points);
             let all = points.into_iter();
@@ -79,7 +86,7 @@ pub(super) fn reached(scene: &Scene, nodes: usize) -> Vec<Vec<Lit>> {
             let point = at(place, 1.0);
             point.surface.is_some() && is_free(&point)
         };
-        let cells = cells(profile, nodes, is_lit);
+        let cells = cells(profile, (nodes, places), is_lit);
         let both = points.into_iter().zip(cells);
         both.map(|(whole, (share, middle))| match share {
             0.0 => Lit::uncut(whole, false),
@@ -92,6 +99,20 @@ pub(super) fn reached(scene: &Scene, nodes: usize) -> Vec<Vec<Lit>> {
     };
     let spots = lit(scene, profile, nodes).into_iter().enumerate();
     spots.map(spot).collect()
+}
+
+/// Places along a line of length `reach`, so that no flat thing or ball falls between two.
+fn places(scene: &Scene, reach: f64) -> usize {
+    let width = |shape: &Shape| match shape {
+        Shape::Parallelogram(p) => p.u().length().min(p.v().length()),
+        Shape::Disc(d) => d.radius(),
+        Shape::Sphere(s) => s.radius,
+        Shape::Instance(_) => f64::INFINITY,
+    };
+    let narrowest = scene.surfaces.iter().map(|s| width(&s.shape));
+    let narrowest = narrowest.fold(f64::INFINITY, f64::min);
+    let [fewest, most] = PLACES;
+    ((OF_NARROWEST * reach / narrowest) as usize).clamp(fewest, most)
 }
 
 /// A line from the middle of a spot outwards.
@@ -107,7 +128,7 @@ struct Line {
 /// cells lie about the nodes of its rule, and hold as much.
 fn cells(
     profile: Profile,
-    nodes: usize,
+    (nodes, places): (usize, usize),
     is_lit: impl Fn([f64; 2]) -> bool,
 ) -> Vec<(f64, [f64; 2])> {
     let around = 2 * nodes;
@@ -116,7 +137,7 @@ fn cells(
     let within = |[a, b]: [f64; 2]| power_within(profile, b) - power_within(profile, a);
     let line = |angle: f64| {
         let (sin, cos) = libm::sincos(angle);
-        let free = free(reach(profile), |r| is_lit([r * cos, r * sin]));
+        let free = free((reach(profile), places), |r| is_lit([r * cos, r * sin]));
         let share = free.iter().map(|part| within(*part)).sum();
         Line { angle, free, share }
     };
@@ -176,12 +197,13 @@ fn between(
     }
 }
 
-/// The free parts of 0 to `reach`, from edge to edge; those that no place falls into are missed.
-fn free(reach: f64, is_lit: impl Fn(f64) -> bool) -> Vec<[f64; 2]> {
-    let at = |k: usize| reach * k as f64 / PLACES as f64;
+/// The free parts of 0 to `reach`, from edge to edge; those that none of the places falls into are
+/// missed.
+fn free((reach, places): (f64, usize), is_lit: impl Fn(f64) -> bool) -> Vec<[f64; 2]> {
+    let at = |k: usize| reach * k as f64 / places as f64;
     let mut found = Vec::new();
     let (mut from, mut was) = (0.0, is_lit(0.0));
-    for k in 1..=PLACES {
+    for k in 1..=places {
         if is_lit(at(k)) == was {
             continue;
         }
@@ -207,70 +229,4 @@ fn free(reach: f64, is_lit: impl Fn(f64) -> bool) -> Vec<[f64; 2]> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2};
-
-    use super::*;
-
-    /// A plate half way up whose shadow ends at x = e: of a disc of radius r it leaves
-    /// ½ + (e √(r² − e²)/r² + asin(e/r))/π, of a Gaussian of 1/e² radius w what is below e of a
-    /// normal distribution of deviation w/2; wherever e lies, to 1e-4, though a node is 3 %. The
-    /// middle of what is left is that of the light below e, −⅔ (r² − e²)^1.5/(π r²) and −w/√(8π)
-    /// e^(−2e²/w²) over it.
-    #[test]
-    fn a_beam_loses_what_an_edge_cuts_off() {
-        let scene = |profile: &str, e: f64| {
-            let text = format!(
-                "name = \"cut\"\nunit = \"in\"\nmax_bounces = 3\n\
-                 [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [0, 0, 10]\n\
-                 spot_diameter = 1.0\nprofile = \"{profile}\"\n\
-                 spots = {{ layout = \"list\", points = [[0, 0], [-9, 1], [9, 0]] }}\n\
-                 [camera]\nposition = [-20, 2, 10]\naperture_area = 0.05\npixels = [2, 2]\n\
-                 view = {{ x = [-3, -2], y = [-1, 1] }}\n\
-                 [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
-                 rectangle = {{ corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0] }}\n\
-                 [[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
-                 rectangle = {{ corner = [{}, -20, 5], u = [20, 0, 0], v = [0, 40, 0] }}\n\
-                 material = {{ lambertian = 0.0 }}\n",
-                0.5 * e
-            );
-            Scene::from_toml("cut", &text).unwrap()
-        };
-        for e in [-0.41, -0.2, -0.013, 0.0, 0.07, 0.33, 0.47] {
-            for profile in ["disc", "gaussian"] {
-                let scene = scene(profile, e);
-                let all = reached(&scene, 4);
-                let power = |spot: &[Lit], of: fn(&Lit) -> WallPoint| -> [f64; 2] {
-                    let each = || spot.iter().map(of);
-                    let moment = |w: WallPoint| w.weight * w.position.x;
-                    [each().map(|w| w.weight).sum(), each().map(moment).sum()]
-                };
-                let shares: Vec<f64> = all
-                    .iter()
-                    .map(|spot| power(spot, |l| l.left)[0] / power(spot, |l| l.whole)[0])
-                    .collect();
-                let r = 0.5f64;
-                let rest = r * r - e * e;
-                let [want, moment] = if profile == "disc" {
-                    let area = e * rest.sqrt() / (r * r) + libm::asin(e / r);
-                    let moment = -2.0 / 3.0 * rest.powf(1.5) / (r * r);
-                    [0.5 + area * FRAC_1_PI, moment * FRAC_1_PI]
-                } else {
-                    let x = e / (0.5 * r);
-                    let height = libm::exp(-0.5 * x * x) / TAU.sqrt();
-                    [0.5 * libm::erfc(-x * FRAC_1_SQRT_2), -0.5 * r * height]
-                };
-                let off = (shares[0] - want).abs();
-                assert!(off < 1e-4, "{profile} {e}: {} for {want}", shares[0]);
-                let [left, along] = power(&all[0], |l| l.left);
-                let off = (along / left * want - moment).abs();
-                assert!(
-                    off < 1e-4,
-                    "{profile} {e}: {} for {moment}",
-                    along / left * want
-                );
-                assert_eq!(shares[1..], [1.0, 0.0], "{profile} {e}");
-            }
-        }
-    }
-}
+mod tests;

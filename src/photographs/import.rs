@@ -33,7 +33,7 @@ pub fn scene_of(set: &Set, scene: Scene, folder: &Path) -> Result<Scene, Photogr
 }
 
 /// Φcam of `scene` ([`scene_of`]) from the photographs of `set` in `folder`, of one channel where
-/// they are in colour. Files are read once, or twice where there are repeats that tell the noise; of all
+/// they are in colour. Files are read once, or twice where repeats tell the noise; of all
 /// photographs those of one file and the average of its spot are held at a time.
 ///
 /// # Errors
