@@ -58,7 +58,7 @@ pub struct Calibration {
     /// Whether light is integrated: then what a finer rule moves is counted in the errors.
     pub is_integrated: bool,
     /// What elements of half the size say; absent where they were not tried: of more than 100
-    /// elements, or surfaces of different numbers.
+    /// elements or large photographs, surfaces of different numbers, meshes.
     pub finer_elements: Option<FinerElements>,
     /// Combinations that the photographs alone do not tell.
     pub untold: Vec<Direction>,

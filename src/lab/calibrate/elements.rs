@@ -14,8 +14,9 @@ use crate::lab::error::LabError;
 use crate::model::{Kernel, MatrixModel, Occlusion};
 use crate::transport::Control;
 
-/// Elements beyond which no finer ones are tried.
+/// Elements, and elements times pixels, beyond which no finer ones are tried.
 const MOST: usize = 400;
+const MOST_SIDE: usize = 1 << 22;
 /// ln of how much likelier finer elements are for which the photographs ask for them.
 const ASKS: f64 = 3.0;
 
@@ -40,7 +41,7 @@ impl FinerElements {
 
 impl Problem<'_> {
     /// Those of twice as many along each side as `model` has, about `best`; none where its surfaces
-    /// differ, or there are too many.
+    /// differ or are not divided so, or there are too many.
     pub(super) fn finer_elements(
         &self,
         model: &MatrixModel,
@@ -49,13 +50,18 @@ impl Problem<'_> {
     ) -> Result<Option<FinerElements>, LabError> {
         let count = model.grids.first().map_or([0; 2], |g| g.count);
         let are_equal = model.grids.iter().all(|g| g.count == count);
-        if !are_equal || 4 * model.albedo.len() > MOST {
+        let all = 4 * model.albedo.len();
+        if !are_equal || all > MOST || all * self.photographs.phi.nrows() > MOST_SIDE {
             return Ok(None);
         }
         let elements = count.map(|n| 2 * n);
         let scene = self.geometry.scene;
         let ignored = Occlusion::Ignored;
         let finer = MatrixModel::with(scene, Kernel::Physical, Some(elements), ignored)?;
+        // Triangles of a mesh are not divided.
+        if finer.albedo.len() != all {
+            return Ok(None);
+        }
         let pictures = picture::priors(&finer.places, self.is_scale_free)?;
         let finer = Problem {
             geometry: Geometry {
