@@ -164,9 +164,10 @@ pub(super) fn contradicted(repeats: &[Repeated], stated: CameraNoise) -> Option<
     sorted.sort_by(|a, b| a.beside.total_cmp(&b.beside));
     let groups = sorted.chunks(FEWEST).map(group);
     let (mut sum, mut freedom) = (0.0, 0.0);
-    for own in groups.filter(|g| g.variance > 2.0 * g.rounding) {
+    for own in groups {
         let due = due(&own, stated, 0.0);
-        if due > 0.0 {
+        // Where rounding is half of it the line does not hold.
+        if due > 2.0 * own.rounding || own.variance > 3.0 * own.rounding {
             sum += own.freedom * own.variance / due;
             freedom += own.freedom;
         }
