@@ -1888,6 +1888,15 @@ BREAKS = [
         "lab::calibrate::tests::errors_that_are_all_zero_are_refused",
         14,
     ),
+    Break(
+        "Errors that entries share are told of a calibration",
+        "src/lab/calibrate/finish.rs",
+        "self.errors.shared().filter(|_| is_noise_known)",
+        "None",
+        "lib",
+        "lab::calibrate::tests::errors_that_hang_together_are_told",
+        14,
+    ),
 ]
 
 

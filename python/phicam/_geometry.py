@@ -168,6 +168,8 @@ def calibrate(
         error_field=bool(error_field),
         background=bool(background),
         replicates=phi.replicates,
+        # A background takes what all spots of a pixel of photographs share.
+        errors_name="independent" if background and not phi.is_rendered else phi.errors,
         elements=pair(elements, "elements"),
         considered=bool(occlusion),
         integration_name=integration,

@@ -180,6 +180,7 @@ def calibrate(
     error_field: bool,
     background: bool,
     replicates: int | None,
+    errors_name: str,
     elements: tuple[int, int] | None,
     considered: bool,
     integration_name: str,

@@ -81,7 +81,7 @@ fn thinned(asked: Option<(usize, usize)>, scene: &scene::Scene) -> Option<[usize
 
 /// The geometry, estimated; the text of the calibrated scene beside it.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, background, replicates, elements,
+#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, background, replicates, errors_name, elements,
                     considered, integration_name, frame_polynomial, starts, spread, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
@@ -99,6 +99,7 @@ pub fn calibrate<'py>(
     error_field: bool,
     background: bool,
     replicates: Option<u32>,
+    errors_name: &str,
     elements: Option<(usize, usize)>,
     considered: bool,
     integration_name: &str,
@@ -119,6 +120,7 @@ pub fn calibrate<'py>(
         error_field,
         background,
         replicates,
+        errors: crate::validate::errors(errors_name)?,
         elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),
         integration: integration(integration_name)?,

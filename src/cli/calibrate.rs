@@ -15,7 +15,7 @@ use super::{Outcome, progress};
 use crate::folder::{Record, write_copies};
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{CalibrationPlan, Found, Free, Work};
+use crate::lab::{CalibrationPlan, Certainty, Errors, Found, Free, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
 
@@ -35,6 +35,10 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     let origin = own.map(|record| &record.origin);
     let plan = CalibrationPlan {
         frame_gain: frame_gain(args.frame_gain, origin, console),
+        errors: origin.map_or(Errors::Independent, |origin| match origin.plan() {
+            Some(plan) => Certainty::of(plan).errors,
+            None => Errors::of_photographs(origin.shares_by_pixel() && !args.background),
+        }),
         ..plan(args, (&scene, replicates), console)
     };
     need::calibrate(&scene, plan.elements)?;
@@ -141,6 +145,7 @@ fn plan(
         error_field: args.error_field,
         background: args.background,
         replicates,
+        errors: Errors::Independent,
         elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
         integration: args.integration,

@@ -104,6 +104,9 @@ pub struct CalibrationPlan {
     pub background: bool,
     /// Replicates from which the standard errors were estimated; none where they are known.
     pub replicates: Option<u32>,
+    /// How the errors of the photographs hang together: they are taken for independent, and where
+    /// they are not that is said.
+    pub errors: Errors,
     /// Elements in place of the scene's.
     pub elements: Option<[usize; 2]>,
     /// Whether things in the way are considered.

@@ -136,7 +136,7 @@ impl Calibration {
                 "With it the photographs fit: χ²/dof {} (p = {}).{}",
                 figure(self.misfit, 3),
                 figure(p, 2),
-                if self.asks_for_elements() {
+                if self.asks_for_elements() || self.shared.is_some() {
                     ""
                 } else {
                     " The errors are those of the noise."
@@ -181,6 +181,17 @@ impl Calibration {
         ))
     }
 
+    /// That errors which hang together do not average out.
+    fn hang_together(&self) -> Option<String> {
+        let which = self.shared?;
+        Some(format!(
+            "The errors of these photographs HANG TOGETHER: {which}, and they do not average out. Those of \
+             the geometry take each entry's for its own, and may be several times too small. Render by \
+             --estimator independent; of dark frames that all spots share take more, or estimate their \
+             part (--background)."
+        ))
+    }
+
     fn searched(&self) -> String {
         let starts = match self.starts.tried {
             1 => "One start was tried: whether others end elsewhere is not known (--starts)."
@@ -201,6 +212,7 @@ impl Calibration {
 
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![self.fit()];
+        notes.extend(self.hang_together());
         notes.extend(self.few_replicates());
         if self.follows_entries {
             notes.push(format!("Beware: {FOLLOWS_ENTRIES}."));
@@ -270,7 +282,9 @@ impl Describe for Calibration {
         Finding {
             title: format!("The geometry, from the photographs: {}", self.scene),
             tone: match self.is_found() {
-                true if self.is_coarse() || self.asks_for_elements() => Tone::Plain,
+                true if self.is_coarse() || self.asks_for_elements() || self.shared.is_some() => {
+                    Tone::Plain
+                }
                 true => Tone::Good,
                 false => Tone::Bad,
             },

@@ -137,6 +137,7 @@ impl CalibrationPlan {
             finer_elements: elements,
             untold,
             replicates: known.replicates.filter(|_| is_noise_known),
+            shared: self.errors.shared().filter(|_| is_noise_known),
             follows_entries: known.follows_entries,
             noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
             field: field.as_ref().map(|f| f.errors),

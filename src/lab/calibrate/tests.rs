@@ -56,6 +56,7 @@ pub(super) fn plan(free: &[&str], n: usize) -> CalibrationPlan {
         error_field: false,
         background: false,
         replicates: None,
+        errors: Errors::Independent,
         elements: Some([n; 2]),
         occlusion: Occlusion::Considered,
         integration: Integration::Centres,
@@ -448,6 +449,25 @@ fn errors_that_are_all_zero_are_refused() {
         plan(&["hidden.normal"], 2).calibrate(&scene, &unexplained(&phi, &zero), Control::none());
     let said = found.unwrap_err().to_string();
     assert!(said.contains("every standard error is 0"), "{said}");
+}
+
+/// Of errors that entries share it is said that they do not average out, in place of that they are
+/// those of the noise; of others not.
+#[test]
+fn errors_that_hang_together_are_told() {
+    let scene = small("bench", 4);
+    let (phi, stderr) = photographs(&scene, 2, 0.01, 1);
+    for errors in Errors::ALL {
+        let how = CalibrationPlan {
+            errors,
+            ..plan(&["hidden.normal"], 2)
+        };
+        let found = how.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+        let notes = found.unwrap().describe().notes.concat();
+        let is_shared = errors != Errors::Independent;
+        assert_eq!(notes.contains("HANG TOGETHER"), is_shared, "{notes}");
+        assert_eq!(notes.contains("those of the noise"), !is_shared, "{notes}");
+    }
 }
 
 /// A picture that changes within the elements bends the geometry: twice as many are asked for, the
