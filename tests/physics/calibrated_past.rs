@@ -1,6 +1,6 @@
 //! The geometry from traced light through a sensor, past a plate whose place is unknown too.
 
-use phicam::lab::{Calibration, CalibrationPlan, Free, Integration, Unexplained};
+use phicam::lab::{Calibration, CalibrationPlan, Errors, Free, Integration, Unexplained};
 use phicam::matrix::Matrix;
 use phicam::model::Occlusion;
 use phicam::num::stream::Sampling;
@@ -55,6 +55,7 @@ fn calibrated(scene: &Scene, light: [&Matrix; 3], sigma: Option<f64>) -> Calibra
         error_field: false,
         background: false,
         replicates: None,
+        errors: Errors::Independent,
         elements: Some([4; 2]),
         occlusion: Occlusion::Considered,
         integration: Integration::Quadrature,
