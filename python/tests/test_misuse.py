@@ -143,7 +143,7 @@ MISUSES = [
     ("neighbours of no grid", Input, lambda s, p, t: phicam.recover(A[:, 0], A, "joint-gp"), "elements"),
     ("nothing to invert by", Input, lambda s, p, t: phicam.recover(FLUX), "model="),
     ("a kernel of matrices", Input, lambda s, p, t: phicam.recover(FLUX, (A, A), kernel="published"), "which have none"),
-    ("a kernel of a Model", Input, lambda s, p, t: phicam.recover(p, phicam.model(s), integration="centres"), "made already"),
+    ("a kernel of a Model", Input, lambda s, p, t: phicam.recover(p, phicam.model(s), kernel="published"), "made already"),
     ("three matrices", Input, lambda s, p, t: phicam.recover(FLUX, (A, A, A)), "pair"),
     ("darkness", Input, lambda s, p, t: phicam.recover(np.zeros((12, 8)), s, "joint", stderr=FLUX), "no light"),
     # Others.
