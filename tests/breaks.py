@@ -1814,7 +1814,7 @@ BREAKS = [
         "(side(&self.lit[l], &rates[l], s) + 0.0 * over)",
         "lib",
         "model::differential::tests::rates_are_those_of_displaced_scenes",
-        14,
+        15,
     ),
     Break(
         "A beam is cut through its middle as beside it",
