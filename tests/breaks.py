@@ -256,7 +256,7 @@ BREAKS = [
         "self.left * (1.0 - by_noise)",
         "self.left * (by_noise - 1.0)",
         "lib",
-        "lab::calibrate::tests::photographs_of_no_geometry_come_with_that_verdict_first",
+        "lab::calibrate::tests::estimates::photographs_of_no_geometry_come_with_that_verdict_first",
         3,
     ),
     Break(
@@ -877,7 +877,7 @@ BREAKS = [
         "Some(frame) => along_cosines(&light, frame),",
         "Some(_) => light,",
         "lib",
-        "lab::calibrate::tests::errors_allow_for_what_neighbours_share",
+        "lab::calibrate::tests::errors::errors_allow_for_what_neighbours_share",
         1,
     ),
     Break(
@@ -1120,7 +1120,7 @@ BREAKS = [
         "noise * noise + rule * rule + even * even",
         "noise * noise + even * even",
         "lib",
-        "lab::calibrate::tests::what_the_integration_leaves_is_in_the_errors",
+        "lab::calibrate::tests::errors::what_the_integration_leaves_is_in_the_errors",
         9,
     ),
     Break(
@@ -1390,7 +1390,7 @@ BREAKS = [
         "finer - 1.0 < 0.5 * (self.misfit - 1.0)",
         "finer - 1.0 < 1.5 * (self.misfit - 1.0)",
         "lib",
-        "lab::calibrate::tests::a_misfit_that_a_finer_rule_leaves_refutes",
+        "lab::calibrate::tests::estimates::a_misfit_that_a_finer_rule_leaves_refutes",
         10,
     ),
     Break(
@@ -1831,7 +1831,7 @@ BREAKS = [
         "let moved = if log_likelier > ASKS {",
         "let moved = if log_likelier > 1e9 {",
         "lib",
-        "lab::calibrate::tests::a_picture_that_is_not_even_asks_for_finer_elements",
+        "lab::calibrate::tests::estimates::a_picture_that_is_not_even_asks_for_finer_elements",
         14,
     ),
     Break(
@@ -1885,16 +1885,16 @@ BREAKS = [
         "all.iter().all(|s| *s == 0.0)",
         "all.iter().all(|s| *s < 0.0)",
         "lib",
-        "lab::calibrate::tests::errors_that_are_all_zero_are_refused",
+        "lab::calibrate::tests::errors::errors_that_are_all_zero_are_refused",
         14,
     ),
     Break(
         "Errors that entries share are told of a calibration",
         "src/lab/calibrate/finish.rs",
-        "self.errors.shared().filter(|_| is_noise_known)",
+        "known.errors.shared().filter(|_| is_noise_known)",
         "None",
         "lib",
-        "lab::calibrate::tests::errors_that_hang_together_are_told",
+        "lab::calibrate::tests::errors::errors_that_hang_together_are_told",
         14,
     ),
 ]

@@ -206,7 +206,7 @@ def locate(
     Parameters
     ----------
     what : str
-        ``normal``, ``u``, ``v``: the hidden surface moved; ``angle``, ``yaw``: turned; ``spots-x``, ``view-x``, …
+        ``normal``, of what is not flat ``u`` and ``v``: the hidden surface moved; ``angle``, ``yaw``: turned; ``spots-x``, ``view-x``, …
     between : (float, float)
         Sizes between which it is looked for, in the scene's unit or degrees; ± 15°, or ± 30 % of the distance, unless
         given.
@@ -243,6 +243,8 @@ def locate(
         flux,
         stderr,
         flags,
+        replicates=phi.replicates,
+        errors_name=phi.errors,
         what=what,
         range=(low, high),
         steps=count,

@@ -197,6 +197,8 @@ def locate(
     stderr: NDArray[Any] | None,
     left_out: NDArray[Any] | None,
     *,
+    replicates: int | None,
+    errors_name: str,
     what: str,
     range: tuple[float, float],
     steps: int,

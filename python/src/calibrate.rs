@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use phicam::jobs::need;
 use phicam::lab::finding::Describe;
-use phicam::lab::{CalibrationPlan, Free, LOCATABLE, LocatedPlan, Unexplained, fewer, polynomials};
+use phicam::lab::{
+    CalibrationPlan, Certainty, Free, LOCATABLE, LocatedPlan, Unexplained, fewer, polynomials,
+};
 use phicam::matrix::Matrix;
 use phicam::scene;
 use pyo3::prelude::*;
@@ -15,6 +17,7 @@ use crate::errors::{Raise, input};
 use crate::findings::found;
 use crate::model::{integration, occlusion};
 use crate::scene::Scene;
+use crate::validate::errors as ways;
 use crate::work::{fits, run};
 
 /// What may be looked for, each with what it is.
@@ -27,6 +30,7 @@ pub fn locatable() -> Vec<(&'static str, &'static str)> {
 struct Photographs {
     phi: Matrix,
     stderr: Option<Matrix>,
+    certainty: Certainty,
     left_out: Option<Matrix>,
     patterns: Option<Matrix>,
 }
@@ -37,12 +41,13 @@ impl Photographs {
         phi: &Bound<'_, PyAny>,
         stderr: Option<&Bound<'_, PyAny>>,
         left_out: Option<&Bound<'_, PyAny>>,
-        degree: Option<u8>,
+        (degree, certainty): (Option<u8>, Certainty),
     ) -> PyResult<Self> {
         let size = [scene.camera.columns, scene.camera.rows];
         let read = Self {
             phi: matrix(phi, "phi")?,
             stderr: errors(stderr, "stderr")?,
+            certainty,
             left_out: maybe(left_out, "left_out")?,
             patterns: degree.map(|degree| polynomials(size, usize::from(degree))),
         };
@@ -67,6 +72,7 @@ impl Photographs {
         Unexplained {
             phi: &self.phi,
             stderr: self.stderr.as_ref(),
+            certainty: self.certainty,
             left_out: self.left_out.as_ref(),
             patterns: self.patterns.as_ref(),
         }
@@ -119,8 +125,6 @@ pub fn calibrate<'py>(
         is_scale_free: free_scale,
         error_field,
         background,
-        replicates,
-        errors: crate::validate::errors(errors_name)?,
         elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),
         integration: integration(integration_name)?,
@@ -132,7 +136,9 @@ pub fn calibrate<'py>(
     fits(py, &scene.inner, move |scene| {
         need::calibrate(scene, elements)
     })?;
-    let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, frame_polynomial)?;
+    let known = Certainty::new(ways(errors_name)?, replicates);
+    let beside = (frame_polynomial, known);
+    let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, beside)?;
     let own = Arc::clone(&scene.inner);
     let done = run(py, threads, progress, move |control| {
         let found = plan.calibrate(&own, &photographs.unexplained(), control)?;
@@ -147,7 +153,7 @@ pub fn calibrate<'py>(
 
 /// Where something is, by the likeliest of some sizes.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, what, range, steps, elements, considered, integration_name,
+#[pyo3(signature = (scene, phi, stderr, left_out, *, replicates, errors_name, what, range, steps, elements, considered, integration_name,
                     frame_polynomial, orders, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
@@ -159,6 +165,8 @@ pub fn locate<'py>(
     phi: &Bound<'py, PyAny>,
     stderr: Option<&Bound<'py, PyAny>>,
     left_out: Option<&Bound<'py, PyAny>>,
+    replicates: Option<u32>,
+    errors_name: &str,
     what: &str,
     range: (f64, f64),
     steps: usize,
@@ -188,7 +196,9 @@ pub fn locate<'py>(
     };
     let elements = plan.elements;
     fits(py, &scene.inner, move |scene| need::locate(scene, elements))?;
-    let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, frame_polynomial)?;
+    let known = Certainty::new(ways(errors_name)?, replicates);
+    let beside = (frame_polynomial, known);
+    let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, beside)?;
     let own = Arc::clone(&scene.inner);
     let done = run(py, threads, progress, move |control| {
         plan.locate(&own, &photographs.unexplained(), control)

@@ -9,7 +9,7 @@ use super::load_run::{read_undamaged, refuse_other_shape};
 use super::run_folder::LEFT_OUT;
 use super::settings::within;
 use crate::folder::Origin;
-use crate::lab::polynomials;
+use crate::lab::{Certainty, Errors, polynomials};
 use crate::matrix::{self, Matrix, npy};
 use crate::num::digits::figure;
 use crate::recovery::{Method, Nuisance, Setting};
@@ -183,6 +183,18 @@ pub(super) fn frame_gain(
         ));
     }
     said.or(own)
+}
+
+/// What is known of the errors of a run's own photographs. A `background` takes what all spots of a
+/// pixel share.
+pub(super) fn certainty(origin: &Origin, background: bool) -> Certainty {
+    match origin.plan() {
+        Some(plan) => Certainty::of(plan),
+        None => {
+            let shared = origin.shares_by_pixel() && !background;
+            Certainty::new(Errors::of_photographs(shared), None)
+        }
+    }
 }
 
 /// Standard errors of photographs with `noise` relative to each entry, for `methods`. Those that

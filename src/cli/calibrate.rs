@@ -15,7 +15,7 @@ use super::{Outcome, progress};
 use crate::folder::{Record, write_copies};
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{CalibrationPlan, Certainty, Errors, Found, Free, Work};
+use crate::lab::{CalibrationPlan, Found, Free, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
 
@@ -26,26 +26,18 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         let (scene, record) = read_run(&args.dir, console)?;
         (scene, Some(record))
     };
-    // Of a run's own errors it is known from how many blocks they were estimated.
     let own = record.as_ref().filter(|_| args.phi.is_none());
-    let replicates = own
-        .and_then(|r| r.origin.plan())
-        .map(|plan| plan.budget.blocks);
-    let replicates = args.replicates.or(replicates);
     let origin = own.map(|record| &record.origin);
     let plan = CalibrationPlan {
         frame_gain: frame_gain(args.frame_gain, origin, console),
-        errors: origin.map_or(Errors::Independent, |origin| match origin.plan() {
-            Some(plan) => Certainty::of(plan).errors,
-            None => Errors::of_photographs(origin.shares_by_pixel() && !args.background),
-        }),
-        ..plan(args, (&scene, replicates), console)
+        ..plan(args, &scene, console)
     };
     need::calibrate(&scene, plan.elements)?;
     let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
     let photographs = match (&args.phi, &record) {
         (None, Some(record)) => {
-            Photographs::read(&args.dir, (&scene, record), left_out, polynomial)?
+            let beside = (polynomial, args.background);
+            Photographs::read(&args.dir, (&scene, record), left_out, beside)?
         }
         (phi, _) => {
             let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
@@ -61,7 +53,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     let pool = pool(args.threads)?;
     let what = format!("calibrate {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
-        pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
+        pool.install(|| plan.calibrate(&scene, &photographs.unexplained(args.replicates), control))
     });
     let calibration = match found {
         Ok(calibration) => calibration,
@@ -133,19 +125,13 @@ fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>, calibrated: &Path) 
 }
 
 /// What is to be done, with what is not given.
-fn plan(
-    args: &CalibrateArgs,
-    (scene, replicates): (&Scene, Option<u32>),
-    console: Console,
-) -> CalibrationPlan {
+fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPlan {
     CalibrationPlan {
         free: free(&args.free, scene),
         frame_gain: args.frame_gain,
         is_scale_free: args.free_scale,
         error_field: args.error_field,
         background: args.background,
-        replicates,
-        errors: Errors::Independent,
         elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
         integration: args.integration,
@@ -215,6 +201,8 @@ fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation 
         "--frame-polynomial",
         args.frame_polynomial.map(|n| n.to_string()),
     );
+    given("--left-out", path(&args.left_out));
+    options.extend(args.occlusion.again());
     Invocation {
         command: vec!["calibrate".to_owned(), dir.to_string_lossy().into_owned()],
         scene: scene.clone(),

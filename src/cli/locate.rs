@@ -27,7 +27,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
         &args.dir,
         (&scene, &record),
         args.left_out.as_deref(),
-        args.frame_polynomial,
+        (args.frame_polynomial, false),
     )?;
     let output = args
         .output
@@ -37,7 +37,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
     let pool = pool(args.threads)?;
     let what = format!("locate in {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
-        pool.install(|| plan.locate(&scene, &photographs.unexplained(), control))
+        pool.install(|| plan.locate(&scene, &photographs.unexplained(None), control))
     });
     let located = found.map_err(|e| Failure::of(e.into()).if_stopped(NOTHING_KEPT))?;
     let found = Found {
@@ -90,6 +90,10 @@ fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
         ("--steps".to_owned(), args.steps.to_string()),
         ("--orders".to_owned(), args.orders.to_string()),
         ("--seed".to_owned(), args.seed.to_string()),
+        (
+            "--integration".to_owned(),
+            args.integration.name().to_owned(),
+        ),
     ];
     let mut given = |name: &str, value: Option<String>| {
         options.extend(value.map(|value| (name.to_owned(), value)));
@@ -107,6 +111,9 @@ fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
         "--frame-polynomial",
         args.frame_polynomial.map(|n| n.to_string()),
     );
+    let path = args.left_out.as_ref();
+    given("--left-out", path.map(|p| p.to_string_lossy().into_owned()));
+    options.extend(args.occlusion.again());
     Invocation {
         command: vec!["locate".to_owned(), dir.to_string_lossy().into_owned()],
         scene: scene.clone(),

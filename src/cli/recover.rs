@@ -5,6 +5,7 @@ mod request;
 use std::path::{Path, PathBuf};
 
 use super::args::RecoverArgs;
+use super::beside::certainty;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_bare_scene, read_run};
@@ -74,7 +75,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         scene: &modelled,
         methods: &methods,
         options,
-        certainty: certainty(args, dir, record.as_ref()),
+        certainty: certainty_of(args, dir, record.as_ref()),
         is_imported: record.as_ref().is_some_and(Record::is_imported),
         phi: args.phi.clone().unwrap_or_else(|| dir.join(PHI)),
         console,
@@ -165,22 +166,10 @@ fn results(args: &RecoverArgs, dir: &Path, of_run: bool) -> Result<(PathBuf, Pla
 }
 
 /// What is known of the errors: of the run's own more than of those that are given.
-fn certainty(args: &RecoverArgs, dir: &Path, record: Option<&Record>) -> Certainty {
-    let own = match record.filter(|_| has_own_errors(args, dir)) {
-        None => Certainty::STATED,
-        Some(record) => match record.origin.plan() {
-            Some(plan) => Certainty::of(plan),
-            // A background takes what all spots of a pixel share.
-            None => {
-                let shared = record.origin.shares_by_pixel() && !args.beside.background;
-                Certainty::new(crate::lab::Errors::of_photographs(shared), None)
-            }
-        },
-    };
-    Certainty {
-        replicates: args.replicates.or(own.replicates),
-        ..own
-    }
+fn certainty_of(args: &RecoverArgs, dir: &Path, record: Option<&Record>) -> Certainty {
+    let own = record.filter(|_| has_own_errors(args, dir));
+    let own = own.map(|record| certainty(&record.origin, args.beside.background));
+    own.unwrap_or(Certainty::STATED).or(args.replicates)
 }
 
 /// Whether Φcam and its errors are those of the run, named or not.

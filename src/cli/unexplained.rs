@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use super::beside::certainty;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_photographs, read_stderr};
 use super::run_folder::{PHI, STDERR};
 use crate::folder::Record;
-use crate::lab::{Unexplained, fewer, polynomials};
+use crate::lab::{Certainty, Unexplained, fewer, polynomials};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
@@ -37,17 +38,19 @@ pub(super) fn elements(
 pub(super) struct Photographs {
     phi: Matrix,
     stderr: Option<Matrix>,
+    certainty: Certainty,
     left_out: Option<Matrix>,
     patterns: Option<Matrix>,
 }
 
 impl Photographs {
-    /// Those of the folder `dir`; other light in each frame is a polynomial of degree `polynomial`.
+    /// Those of the folder `dir`; other light in each frame is a polynomial of degree `polynomial`,
+    /// and there may be a `background` that all frames share.
     pub(super) fn read(
         dir: &Path,
         (scene, record): (&Scene, &Record),
         left_out: Option<&Path>,
-        polynomial: Option<u8>,
+        (polynomial, background): (Option<u8>, bool),
     ) -> Result<Self, Failure> {
         let file = dir.join(STDERR);
         // Of imported photographs the noise may be unknown.
@@ -59,7 +62,7 @@ impl Photographs {
         let stderr = (!is_unknown).then_some(file);
         Self::new(
             (&dir.join(PHI), stderr.as_deref()),
-            left_out,
+            (left_out, certainty(&record.origin, background)),
             (scene, polynomial),
         )
     }
@@ -72,12 +75,13 @@ impl Photographs {
         polynomial: Option<u8>,
     ) -> Result<Self, Failure> {
         let left_out = left_out.map(|file| read_matrix(file, scene)).transpose()?;
-        Self::new((phi, stderr), left_out, (scene, polynomial))
+        let known = (left_out, Certainty::STATED);
+        Self::new((phi, stderr), known, (scene, polynomial))
     }
 
     fn new(
         (phi, stderr): (&Path, Option<&Path>),
-        left_out: Option<Matrix>,
+        (left_out, certainty): (Option<Matrix>, Certainty),
         (scene, polynomial): (&Scene, Option<u8>),
     ) -> Result<Self, Failure> {
         let flags = left_out.as_ref();
@@ -86,15 +90,18 @@ impl Photographs {
             stderr: stderr
                 .map(|file| read_stderr(file, flags, scene))
                 .transpose()?,
+            certainty,
             patterns: patterns(scene, polynomial),
             left_out,
         })
     }
 
-    pub(super) fn unexplained(&self) -> Unexplained<'_> {
+    /// The same; their errors are known as from so many `replicates`, where that is said.
+    pub(super) fn unexplained(&self, replicates: Option<u32>) -> Unexplained<'_> {
         Unexplained {
             phi: &self.phi,
             stderr: self.stderr.as_ref(),
+            certainty: self.certainty.or(replicates),
             left_out: self.left_out.as_ref(),
             patterns: self.patterns.as_ref(),
         }

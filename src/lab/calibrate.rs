@@ -58,7 +58,6 @@ pub use elements::FinerElements;
 pub use identified::{Direction, Identified};
 pub use profile::Profile;
 
-use super::certainty::{Certainty, Errors};
 use super::error::LabError;
 use super::misplaced::normal;
 use super::refined::Refined;
@@ -102,11 +101,6 @@ pub struct CalibrationPlan {
     pub error_field: bool,
     /// Whether there is light that all frames share, unknown in each pixel.
     pub background: bool,
-    /// Replicates from which the standard errors were estimated; none where they are known.
-    pub replicates: Option<u32>,
-    /// How the errors of the photographs hang together: they are taken for independent, and where
-    /// they are not that is said.
-    pub errors: Errors,
     /// Elements in place of the scene's.
     pub elements: Option<[usize; 2]>,
     /// Whether things in the way are considered.
@@ -139,7 +133,7 @@ impl CalibrationPlan {
         photographs: &Unexplained<'_>,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
-        let known = Certainty::new(Errors::Independent, self.replicates);
+        let known = photographs.certainty;
         let stderr = photographs.stderr;
         if stderr.is_some_and(|all| all.iter().all(|s| *s == 0.0)) {
             return Err(LabError::Unsuited(
@@ -151,9 +145,10 @@ impl CalibrationPlan {
         let known = refined.as_ref().map_or(known, |own| own.certainty);
         let photographs = Unexplained {
             stderr: refined.as_ref().map(|own| own.stderr.as_ref()),
+            certainty: known,
             ..*photographs
         };
-        self.search(scene, &photographs, known, control)
+        self.search(scene, &photographs, control)
     }
 
     /// From all starts to the estimate.
@@ -161,7 +156,6 @@ impl CalibrationPlan {
         &self,
         scene: &Scene,
         photographs: &Unexplained<'_>,
-        known: Certainty,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
         let (parameters, mut priors) = self.parameters(scene)?;
@@ -224,7 +218,7 @@ impl CalibrationPlan {
             });
             (control.progress)(1);
         }
-        self.finish(&problem, (&model, told, untold), (ends, known), control)
+        self.finish(&problem, (&model, told, untold), ends, control)
     }
 
     fn parameters(&self, scene: &Scene) -> Result<(Vec<Parameter>, Vec<Option<f64>>), LabError> {

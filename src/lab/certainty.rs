@@ -66,6 +66,16 @@ impl Errors {
     }
 }
 
+/// That errors of which entries share `which` do not average out, in what is found of `what`, and
+/// the cure.
+pub(super) fn hang_together(which: &str, what: &str, cure: &str) -> String {
+    format!(
+        "The errors of these photographs HANG TOGETHER: {which}, and they do not average out. Those of \
+         {what} take each entry's for its own, and may be several times too small. Render by --estimator \
+         independent; of dark frames that all spots share {cure}."
+    )
+}
+
 /// What is known of standard errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certainty {
@@ -103,6 +113,15 @@ impl Certainty {
         Self {
             paths: Some(plan.budget.samples()),
             ..Self::new(Errors::of(plan.estimator), Some(plan.budget.blocks))
+        }
+    }
+
+    /// The same, known as from so many `replicates` where that is said.
+    #[must_use]
+    pub fn or(self, replicates: Option<u32>) -> Self {
+        Self {
+            replicates: replicates.or(self.replicates),
+            ..self
         }
     }
 

@@ -53,6 +53,11 @@ const AROUND: f64 = 1.5;
 /// Searches at most: the last step is 1e-5 of the first.
 const SEARCHES: usize = 12;
 
+/// Why a shift is not looked for that only moves the picture.
+const WITHIN_ITS_PLANE: LabError = LabError::Unsuited(
+    "a shift of flat hidden surfaces within their own plane is where on them the picture lies, and photographs do not tell it from another picture; look along their normal (--what normal): the bright part of the picture says where on them it is",
+);
+
 /// What may be looked for: its name on the command line, and that of the studies.
 pub const LOCATABLE: [(&str, &str); 9] = [
     ("normal", "S2 along its normal"),
@@ -104,6 +109,9 @@ impl LocatedPlan {
         control: Control<'_>,
     ) -> Result<Located, LabError> {
         let altered = self.misplaced()?;
+        if altered.is_of_the_picture(scene) {
+            return Err(WITHIN_ITS_PLANE);
+        }
         let model = self.model(scene)?;
         if model.places.is_empty() {
             return Err(LabError::Unsuited(
@@ -205,6 +213,7 @@ impl LocatedPlan {
             entries: photographs.counted(),
             frames: photographs.phi.ncols(),
             is_noise_known: photographs.stderr.is_some(),
+            shared: photographs.certainty.errors.shared(),
         })
     }
 
@@ -240,7 +249,7 @@ impl LocatedPlan {
             directions: found.directions,
             misfit: found.misfit,
             predicted: found.predicted,
-            bright: found.bright(&model.places),
+            bright: found.bright(&model),
         }))
     }
 

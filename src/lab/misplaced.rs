@@ -7,6 +7,9 @@ use crate::num::stream::{Key, Sampling, Stream};
 use crate::num::warp;
 use crate::scene::{Scene, Twist, Velocity};
 
+/// Sine of the angle below which a shift stays within a plane.
+const WITHIN: f64 = 1e-9;
+
 /// What a size is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Size {
@@ -148,6 +151,18 @@ impl Misplaced {
             }
             Motion::Bend => bent(scene, size),
         }
+    }
+
+    /// Whether this only moves flat hidden surfaces within their own planes: then it is where on
+    /// them the picture lies.
+    pub(super) fn is_of_the_picture(&self, scene: &Scene) -> bool {
+        let Motion::Shift(along) = self.motion else {
+            return false;
+        };
+        along(scene).is_some_and(|along| {
+            let mut hidden = scene.hidden().map(|(_, s)| &s.shape);
+            hidden.all(|s| s.is_flat() && s.at([0.5; 2]).normal.dot(along).abs() < WITHIN)
+        })
     }
 
     /// How everything moves per unit of its size; none where the scene does not allow it, and of

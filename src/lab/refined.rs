@@ -3,8 +3,8 @@
 //! Errors that follow from the noisy entries, σ² = a + b x + c x² of every entry x (√n of counts n,
 //! a share of each entry), make entries too certain that noise has made darker, and the picture too
 //! dark. That law is exact, which errors of any other origin do not follow, and of the light that
-//! is [`expected`] of each entry it holds for the noise itself. Errors from few replicates are
-//! [`Pooled`].
+//! is [`expected`] of each entry it holds for the noise itself, counts of none included. Errors from
+//! few replicates are [`Pooled`].
 
 use std::borrow::Cow;
 
@@ -14,6 +14,7 @@ use super::certainty::Certainty;
 use super::pooled::Pooled;
 use crate::matrix::{Matrix, expected};
 use crate::num::linalg::Cholesky;
+use crate::num::separable::Separable;
 
 /// Powers of x of which σ² may be a sum, the fewest first.
 const LAWS: [&[i32]; 5] = [&[1], &[2], &[0, 1], &[1, 2], &[0, 1, 2]];
@@ -48,11 +49,11 @@ impl<'a> Refined<'a> {
             let light = expected(phi, &stderr.map(|s| s * s), left_out);
             return match light.ok().flatten() {
                 Some(light) => Self {
-                    stderr: Cow::Owned(law.at(&light, stderr)),
+                    stderr: Cow::Owned(law.at(&light, (phi, stderr))),
                     certainty,
                 },
                 None => Self {
-                    stderr: Cow::Borrowed(stderr),
+                    stderr: law.of_counts_of_none((phi, stderr), left_out),
                     certainty: Certainty {
                         follows_entries: true,
                         ..certainty
@@ -165,15 +166,42 @@ impl Law {
     }
 
     /// The errors of this light; those given where it says nothing.
-    fn at(&self, light: &Matrix, given: &Matrix) -> Matrix {
-        light.zip_map(given, |x, own| {
-            let variance = self.variance(x);
-            if own > 0.0 && variance > 0.0 {
+    fn at(&self, light: &Matrix, (phi, given): (&Matrix, &Matrix)) -> Matrix {
+        Matrix::from_fn(phi.nrows(), phi.ncols(), |p, l| {
+            let (variance, own) = (self.variance(light[(p, l)]), given[(p, l)]);
+            let is_told = own > 0.0 || self.is_count_of_none(phi[(p, l)], own);
+            if is_told && variance > 0.0 {
                 variance.sqrt()
             } else {
                 own
             }
         })
+    }
+
+    /// Whether nothing was counted: that has the error of what is expected, not of 0.
+    fn is_count_of_none(&self, x: f64, stderr: f64) -> bool {
+        let of_counts = |(power, factor): &(i32, f64)| *power == 1 && *factor > 0.0;
+        x == 0.0 && stderr == 0.0 && self.terms.iter().any(of_counts)
+    }
+
+    /// The errors given, of counts of none those of the light that pixel and spot have.
+    fn of_counts_of_none<'a>(
+        &self,
+        (phi, given): (&Matrix, &'a Matrix),
+        left_out: Option<&Matrix>,
+    ) -> Cow<'a, Matrix> {
+        let counts = |at: usize| left_out.is_none_or(|out| out[at] == 0.0);
+        let is_none = |at: usize| counts(at) && self.is_count_of_none(phi[at], given[at]);
+        if !(0..phi.len()).any(is_none) {
+            return Cow::Borrowed(given);
+        }
+        let at: Vec<usize> = (0..phi.len()).filter(|at| counts(*at)).collect();
+        let light = Separable::of(phi, &at);
+        let mut own = given.clone();
+        for at in (0..phi.len()).filter(|at| is_none(*at)) {
+            own[at] = self.variance(light.at(at)).max(0.0).sqrt();
+        }
+        Cow::Owned(own)
     }
 }
 

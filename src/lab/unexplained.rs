@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::certainty::Certainty;
 use crate::matrix::Matrix;
 use crate::num::linalg::{LinalgError, product, svd, tr_product};
 use crate::scene::Scene;
@@ -27,6 +28,9 @@ pub struct Unexplained<'a> {
     pub phi: &'a Matrix,
     /// Its standard errors up to a common factor, the same shape; all alike where they are unknown.
     pub stderr: Option<&'a Matrix>,
+    /// What is known of these errors. They are taken for independent, and where they are not that
+    /// is said.
+    pub certainty: Certainty,
     /// Entries that do not count, the same shape: those that are not 0.
     pub left_out: Option<&'a Matrix>,
     /// Patterns of other light, pixels × patterns, each with a strength of its own in each frame.

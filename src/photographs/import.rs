@@ -57,8 +57,7 @@ pub fn import(
     let placing = Placing::new(set, &scene.camera, shots.size)?;
     let unit = unit(set.watts, &shots.takes)?;
     let given = set.camera_noise()?;
-    let has_repeats = given.is_none() || set.repeats.is_some_and(|n| n > 1);
-    let repeated = if has_repeats {
+    let repeated = if given.is_none() || shots.has_repeats(&mut reader)? {
         shots.repeated(&mut reader)?
     } else {
         Vec::new()

@@ -236,6 +236,20 @@ impl<'a> Shots<'a> {
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }
 
+    /// Whether photographs are repeated: as the set says, in files of one spot, or in the first
+    /// file of a list.
+    pub(super) fn has_repeats(&self, reader: &mut Reader<'_>) -> Result<bool, PhotographError> {
+        let mut pairs = self.takes.windows(2);
+        let are_of_one = |pair: &[Take]| pair[0].spot.is_some() && pair[0].spot == pair[1].spot;
+        if self.set.repeats.is_some_and(|n| n > 1) || pairs.any(are_of_one) {
+            return Ok(true);
+        }
+        match self.takes.first().filter(|take| take.spot.is_some()) {
+            Some(take) => Ok(reader.photographs(&take.path)?.len() > 1),
+            None => Ok(false),
+        }
+    }
+
     /// The repeats of the pixels of one channel, from all repeated photographs; none where none
     /// are.
     pub(super) fn repeated(

@@ -251,9 +251,12 @@ impl Recovered {
     /// Standard errors of ∞ where what was cut as rounding may take more of an element: of
     /// reflectances ½ ± ½, ½ ‖(R − 1)_j‖ with `lost`_j = ‖(R − 1)_j‖². Of a cut that was asked for
     /// by its rank R − 1 is regularisation, and its bias no part of a standard error.
-    pub(super) fn without_errors_of_the_unseen(mut self, lost: &DVector<f64>) -> Self {
+    pub(super) fn without_errors_of_the_unseen(
+        mut self,
+        lost: impl FnOnce() -> DVector<f64>,
+    ) -> Self {
         if let (Choice::Tolerance { .. }, Some(errors)) = (self.choice, &mut self.standard_error) {
-            for (error, lost) in errors.iter_mut().zip(lost.iter()) {
+            for (error, lost) in errors.iter_mut().zip(lost().iter()) {
                 if 0.5 * lost.max(0.0).sqrt() > *error {
                     *error = f64::INFINITY;
                 }

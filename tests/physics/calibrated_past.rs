@@ -1,6 +1,6 @@
 //! The geometry from traced light through a sensor, past a plate whose place is unknown too.
 
-use phicam::lab::{Calibration, CalibrationPlan, Errors, Free, Integration, Unexplained};
+use phicam::lab::{Calibration, CalibrationPlan, Certainty, Free, Integration, Unexplained};
 use phicam::matrix::Matrix;
 use phicam::model::Occlusion;
 use phicam::num::stream::Sampling;
@@ -54,8 +54,6 @@ fn calibrated(scene: &Scene, light: [&Matrix; 3], sigma: Option<f64>) -> Calibra
         is_scale_free: false,
         error_field: false,
         background: false,
-        replicates: None,
-        errors: Errors::Independent,
         elements: Some([4; 2]),
         occlusion: Occlusion::Considered,
         integration: Integration::Quadrature,
@@ -67,6 +65,7 @@ fn calibrated(scene: &Scene, light: [&Matrix; 3], sigma: Option<f64>) -> Calibra
     let photographs = Unexplained {
         phi,
         stderr: Some(stderr),
+        certainty: Certainty::STATED,
         left_out: Some(left_out),
         patterns: None,
     };

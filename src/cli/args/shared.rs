@@ -58,6 +58,12 @@ impl OcclusionArgs {
             Occlusion::Considered
         }
     }
+
+    /// The option with its value, to ask for it again; none where it is usual.
+    pub(in crate::cli) fn again(&self) -> Option<(String, String)> {
+        self.no_occlusion
+            .then(|| ("--no-occlusion".to_owned(), String::new()))
+    }
 }
 
 /// How traced and modelled are compared.

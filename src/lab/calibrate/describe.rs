@@ -6,6 +6,7 @@ mod tables;
 
 use super::{Calibrated, Calibration};
 use crate::lab::certainty::FOLLOWS_ENTRIES;
+use crate::lab::certainty::hang_together;
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::lab::which_errors::which_errors;
@@ -183,13 +184,8 @@ impl Calibration {
 
     /// That errors which hang together do not average out.
     fn hang_together(&self) -> Option<String> {
-        let which = self.shared?;
-        Some(format!(
-            "The errors of these photographs HANG TOGETHER: {which}, and they do not average out. Those of \
-             the geometry take each entry's for its own, and may be several times too small. Render by \
-             --estimator independent; of dark frames that all spots share take more, or estimate their \
-             part (--background)."
-        ))
+        let cure = "take more, or estimate their part (--background)";
+        Some(hang_together(self.shared?, "the geometry", cure))
     }
 
     fn searched(&self) -> String {

@@ -150,6 +150,7 @@ impl<'a> Problem<'a> {
             photographs: Unexplained {
                 phi: &field.phi,
                 stderr: Some(&field.stderr),
+                certainty: self.photographs.certainty,
                 left_out: None,
                 patterns: field.patterns.as_ref(),
             },

@@ -6,7 +6,6 @@ use super::{
     Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
     Starts, profile,
 };
-use crate::lab::certainty::Certainty;
 use crate::lab::error::LabError;
 use crate::lab::located::Grid;
 use crate::lab::validation::Integration;
@@ -25,7 +24,7 @@ impl CalibrationPlan {
         &self,
         problem: &Problem<'_>,
         (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
-        (mut ends, known): (Vec<End>, Certainty),
+        mut ends: Vec<End>,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
         ends.sort_by(|a, b| a.total.total_cmp(&b.total));
@@ -42,6 +41,7 @@ impl CalibrationPlan {
         let with_field = field.as_ref().map(|field| problem.with_field(field));
         let with_field = with_field.transpose()?;
         let is_noise_known = problem.photographs.stderr.is_some();
+        let known = problem.photographs.certainty;
         let problem = with_field.as_ref().unwrap_or(problem);
         let information = problem.information(&best.slope);
         let covariance = Cholesky::new(&information).ok_or(LabError::DARK)?.inverse();
@@ -137,7 +137,7 @@ impl CalibrationPlan {
             finer_elements: elements,
             untold,
             replicates: known.replicates.filter(|_| is_noise_known),
-            shared: self.errors.shared().filter(|_| is_noise_known),
+            shared: known.errors.shared().filter(|_| is_noise_known),
             follows_entries: known.follows_entries,
             noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
             field: field.as_ref().map(|f| f.errors),

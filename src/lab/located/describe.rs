@@ -1,6 +1,7 @@
 //! What is said of where a hidden surface is.
 
 use super::{Grid, Located, Order};
+use crate::lab::certainty::hang_together;
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
     Shades, Table, Tone,
@@ -165,15 +166,17 @@ impl Located {
                 _ => middle,
             }
         });
-        let error = if bright.stderr.is_some() {
-            " (by leaving frames out, the place of the surface being given)"
-        } else {
-            "; its error is not known"
+        let error = match bright.stderr {
+            Some(_) => {
+                " (by leaving frames out, and no finer than an element, the place of the surface being given)"
+            }
+            None => "; its error is not known",
         };
         Some(format!(
-            "The bright part, {} elements of at least half the largest reflectance and above twice \
+            "The bright part, {} element{} of at least half the largest reflectance and above twice \
              their error, has its middle at ({x}, {y}, {z}){error}.",
-            bright.elements
+            bright.elements,
+            if bright.elements == 1 { "" } else { "s" }
         ))
     }
 
@@ -217,6 +220,8 @@ impl Describe for Located {
     fn describe(&self) -> Finding {
         let title = format!("Where it is: {}, {}", self.what, self.scene);
         let mut notes = vec![self.errors(), self.explained()];
+        let which = self.shared.filter(|_| self.is_noise_known);
+        notes.extend(which.map(|which| hang_together(which, "the place", "take more")));
         notes.extend(self.brightest());
         notes.push(self.ordered());
         let points = |of: fn(&super::Likelihood) -> f64| -> Vec<[f64; 2]> {

@@ -22,7 +22,8 @@ pub struct Likelihood {
 pub struct Bright {
     /// Its place, in the scene's unit.
     pub middle: [f64; 3],
-    /// Its standard error, by leaving frames out; which elements are above their errors is given.
+    /// Its standard error: by leaving frames out, and a side of an element over √12, within which
+    /// it may lie anywhere; which elements are above their errors is given.
     pub stderr: Option<[f64; 3]>,
     /// The elements.
     pub elements: usize,
@@ -98,6 +99,8 @@ pub struct Located {
     pub frames: usize,
     /// Whether standard errors are stated.
     pub is_noise_known: bool,
+    /// Which entries share their errors, where they do: no frame left out shows that.
+    pub shared: Option<&'static str>,
 }
 
 impl Located {

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::frames::{Side, TermsOf};
 use super::likelihood::Fit;
+use crate::lab::certainty::Certainty;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
@@ -45,6 +46,7 @@ pub(super) struct Rearranged {
 pub(super) struct Photographs {
     phi: Matrix,
     stderr: Option<Matrix>,
+    certainty: Certainty,
     left_out: Option<Matrix>,
 }
 
@@ -53,6 +55,7 @@ impl Photographs {
         Unexplained {
             phi: &self.phi,
             stderr: self.stderr.as_ref(),
+            certainty: self.certainty,
             left_out: self.left_out.as_ref(),
             patterns,
         }
@@ -139,6 +142,7 @@ impl Rearranged {
         Photographs {
             phi: in_order(stated.phi),
             stderr: stated.stderr.map(in_order),
+            certainty: stated.certainty,
             left_out: stated.left_out.map(in_order),
         }
     }

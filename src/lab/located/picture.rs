@@ -7,6 +7,7 @@ use super::frames::Frame;
 use super::likelihood::{Spectrum, log_ratios};
 use super::place::jackknifed;
 use crate::matrix::Matrix;
+use crate::model::{ElementGrid, MatrixModel};
 use crate::num::linalg::LinalgError;
 
 /// Posterior mean of the reflectances. The prior's λ and length are chosen by how well each frame
@@ -94,18 +95,23 @@ impl Pictured {
 
     /// The bright part of the picture of elements at `places`: of those that are above twice their
     /// standard error, those of at least half the largest reflectance. None where there are none.
-    pub(super) fn bright(&self, places: &[[f64; 3]]) -> Option<Bright> {
+    pub(super) fn bright(&self, model: &MatrixModel) -> Option<Bright> {
+        let places = &model.places;
         let stderr = self.stderr();
         let is_seen = |j: &usize| self.rho[*j] > 2.0 * stderr[*j];
         let seen: Vec<usize> = (0..places.len()).filter(is_seen).collect();
         let (own, elements) = middle(&self.rho, places, &seen)?;
+        let sides = mean_sides(model, &self.rho, &seen);
         let without = self.without.iter();
         let without: Option<Vec<[f64; 3]>> = without
             .map(|rho| middle(rho, places, &seen).map(|(middle, _)| middle))
             .collect();
         let spread = |k: usize| {
             let values: Vec<f64> = without.as_ref()?.iter().map(|m| m[k]).collect();
-            jackknifed(&values)
+            Some(libm::hypot(
+                jackknifed(&values)?,
+                (sides.as_ref()?[k] / 12.0).sqrt(),
+            ))
         };
         let stderr = match [0, 1, 2].map(spread) {
             [Some(x), Some(y), Some(z)] => Some([x, y, z]),
@@ -117,6 +123,34 @@ impl Pictured {
             elements,
         })
     }
+}
+
+/// The mean square of the sides of the bright elements along x, y and z, weighted like their
+/// places, by how far neighbours of the grid are: none of a surface that is one element wide.
+fn mean_sides(model: &MatrixModel, rho: &DVector<f64>, seen: &[usize]) -> Option<[f64; 3]> {
+    let narrow = |g: &ElementGrid| g.count.contains(&1);
+    if model.grids.iter().any(narrow) {
+        return None;
+    }
+    let squares = |j: usize| -> [f64; 3] {
+        let grid = model
+            .grids
+            .iter()
+            .find(|g| (g.first..g.first + g.len()).contains(&j));
+        let square = |k: usize, grid: &ElementGrid| {
+            let [nu, nv] = grid.count;
+            let (iu, iv) = ((j - grid.first) % nu, (j - grid.first) / nu);
+            let [u, v] = [
+                if iu + 1 < nu { j + 1 } else { j - 1 },
+                if iv + 1 < nv { j + nu } else { j - nu },
+            ];
+            let to = |other: usize| (model.places[other][k] - model.places[j][k]).powi(2);
+            to(u) + to(v)
+        };
+        grid.map_or([0.0; 3], |grid| [0, 1, 2].map(|k| square(k, grid)))
+    };
+    let sides: Vec<[f64; 3]> = (0..rho.len()).map(squares).collect();
+    middle(rho, &sides, seen).map(|(mean, _)| mean)
 }
 
 /// The mean place of the elements of `seen` with at least half the largest reflectance of those,

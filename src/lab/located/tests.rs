@@ -1,11 +1,14 @@
 //! The likelihood against a dense normal distribution; places against scenes that were moved.
 
+mod told;
+
 use nalgebra::DVector;
 
 use super::frames::{Frame, Side, TermsOf, covariance_root};
 use super::likelihood::{Fit, Spectrum};
 use super::{Located, LocatedPlan};
 use crate::lab::Integration;
+use crate::lab::certainty::Certainty;
 use crate::lab::misplaced::normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
@@ -53,6 +56,7 @@ impl Small {
         Unexplained {
             phi: &self.phi,
             stderr: Some(&self.stderr),
+            certainty: Certainty::STATED,
             left_out: Some(&self.left_out),
             patterns: Some(&self.patterns),
         }
@@ -238,6 +242,7 @@ fn located(scene: &Scene, phi: &Matrix, stderr: &Matrix, plan: LocatedPlan) -> L
     let photographs = Unexplained {
         phi,
         stderr: Some(stderr),
+        certainty: Certainty::STATED,
         left_out: None,
         patterns: None,
     };

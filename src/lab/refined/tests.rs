@@ -7,6 +7,7 @@ use crate::lab::{
 };
 use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
 use crate::num::control::Control;
+use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::{Method, Nuisance, Options};
 use crate::scene::Scene;
 
@@ -127,4 +128,37 @@ fn a_verdict_takes_errors_as_well_as_photographs_tell_them() {
     let [phi, stderr] = [&phi, &stderr].map(|m| m.columns(0, 2).into_owned());
     let few = judged(&scene, [&phi, &stderr], None);
     assert!(few.unmodelled.iter().any(|u| u == FOLLOWS_ENTRIES));
+}
+
+/// Counts of few electrons with √n for errors, among them none: their error is that of the light,
+/// to a half, whatever the number of pixels, and z of all against the light has χ²/n of 1 within
+/// five of its standard errors, of Poisson's law √((2 + 1/μ)/n) for every mean μ.
+#[test]
+fn counts_of_none_have_errors() {
+    let light = Matrix::from_fn(48, 40, |p, l| 2.0 + 0.05 * p as f64 + 0.04 * l as f64);
+    let key = Key {
+        seed: 5,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let mut draw = Stream::new(Sampling::Pcg, key);
+    let phi = light.map(|mu| draw.poisson(mu));
+    let own = phi.map(f64::sqrt);
+    for rows in [48, 6] {
+        let [phi, own, light] = [&phi, &own, &light].map(|m| m.rows(0, rows).into_owned());
+        let refined = Refined::of(&phi, &own, Certainty::STATED, None);
+        let none: Vec<usize> = (0..phi.len()).filter(|at| phi[*at] == 0.0).collect();
+        assert!(none.len() > 5, "{}", none.len());
+        for at in none {
+            let off = refined.stderr[at] / light[at].sqrt();
+            assert!((0.5..1.5).contains(&off), "{rows}: {off}");
+        }
+        if rows == 48 {
+            let z = (&phi - &light).component_div(&refined.stderr);
+            let mean = z.norm_squared() / z.len() as f64;
+            let each = light.map(|mu| 2.0 + 1.0 / mu).mean() / z.len() as f64;
+            assert!((mean - 1.0).abs() < 5.0 * each.sqrt(), "{mean}");
+        }
+    }
 }

@@ -52,7 +52,7 @@ pub(in crate::recovery) fn recover(
         .map(|c| c.diagonal().map(|x| x.max(0.0).sqrt()));
     found.covariance = covariance;
     found.resolution = Some(resolution);
-    Ok(found.without_errors_of_the_unseen(&lost))
+    Ok(found.without_errors_of_the_unseen(|| lost))
 }
 
 #[cfg(test)]

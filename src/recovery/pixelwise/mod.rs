@@ -159,6 +159,11 @@ impl Inverse {
     /// but for ratios of C.
     fn lost(&self, d: &DMatrix<f64>) -> DVector<f64> {
         let elements = d.nrows();
+        if let Some(product) = &self.product {
+            let off = |i: usize, j: usize| product[(i, j)] - f64::from(u8::from(i == j));
+            let lost = |j: usize| (0..elements).map(|i| off(i, j).powi(2)).sum();
+            return DVector::from_fn(elements, |j, _| lost(j));
+        }
         let told = product(d, &self.data.transpose());
         let mut lost = DVector::zeros(elements);
         for first in (0..elements).step_by(PIXELS) {
@@ -180,11 +185,12 @@ impl Inverse {
         options: &Options,
     ) -> Result<Recovered, RecoveryError> {
         let reflectance = self.sum(problem)? / problem.phi.nrows() as f64;
-        let lost = self.lost(problem.d);
-        let mut found = Recovered::plain(method, problem, reflectance, self.sigma, self.rank)?;
+        let sigma = self.sigma.clone();
+        let mut found = Recovered::plain(method, problem, reflectance, sigma, self.rank)?;
         (found.parameter, found.choice) = self.why;
         found.effective_rank = self.effective_rank;
-        found.resolution = self.product.map(|m| uncertainty::resolution(problem.c, &m));
+        let product = self.product.as_ref();
+        found.resolution = product.map(|m| uncertainty::resolution(problem.c, m));
         if let Some(stderr) = problem.noise() {
             let factors = (&self.data, &self.solution);
             found.standard_error = Some(uncertainty::standard_error(stderr, factors, problem.c));
@@ -193,7 +199,7 @@ impl Inverse {
                 found.covariance = Some(uncertainty::covariance(stderr, &sharp, problem.c)?);
             }
         }
-        Ok(found.without_errors_of_the_unseen(&lost))
+        Ok(found.without_errors_of_the_unseen(|| self.lost(problem.d)))
     }
 }
 

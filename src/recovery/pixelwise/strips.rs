@@ -80,8 +80,8 @@ pub fn recover_strips<E: From<RecoveryError>>(
         at += phi.nrows();
     }
     let norms = [left.sqrt(), square.sqrt()];
-    let lost = inverse.lost(d);
-    let mut found = Recovered::with_norms(method, norms, reflectance, inverse.sigma, inverse.rank);
+    let sigma = inverse.sigma.clone();
+    let mut found = Recovered::with_norms(method, norms, reflectance, sigma, inverse.rank);
     (found.parameter, found.choice) = inverse.why;
     found.effective_rank = inverse.effective_rank;
     found.standard_error = variance.map(|seen| {
@@ -91,7 +91,7 @@ pub fn recover_strips<E: From<RecoveryError>>(
             terms.sum().sqrt() / pixels as f64
         })
     });
-    found = found.without_errors_of_the_unseen(&lost);
+    found = found.without_errors_of_the_unseen(|| inverse.lost(d));
     if let Some(confidence) = options.bands {
         found.add_gaussian_bands(confidence)?;
     }

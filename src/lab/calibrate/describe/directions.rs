@@ -11,9 +11,18 @@ pub(in crate::lab::calibrate) fn untold(
     parameters: &[Parameter],
 ) -> String {
     let name = |k: usize| parameters.get(k).map(|p| p.name.clone());
-    let all: Vec<String> = directions.iter().map(|d| d.names(name)).collect();
+    let mut all: Vec<String> = directions.iter().map(|d| d.names(name)).collect();
+    all.sort();
+    all.dedup();
+    let mut parts = directions.iter().flat_map(|d| &d.parts);
+    let of_gains = parts.any(|(k, _)| *k >= parameters.len());
+    let gains = if of_gains {
+        "; of gains, a smaller --frame-gain, no --free-scale, or other light of a lower degree"
+    } else {
+        ""
+    };
     format!(
-        "at their noise the photographs do not tell {}; what moves with such a combination changes nothing that the picture or the rest could not. Leave one of each out, or say how well it is known (--free NAME=SIGMA, or [uncertainty] in the scene)",
+        "at their noise the photographs do not tell {}; what moves with such a combination changes nothing that the picture or the rest could not. Leave one of each out, or say how well it is known (--free NAME=SIGMA, or [uncertainty] in the scene){gains}",
         listed(&all)
     )
 }
@@ -22,10 +31,12 @@ impl Direction {
     pub(super) fn names(&self, name: impl Fn(usize) -> Option<String>) -> String {
         let of = |(k, part): &(usize, f64)| {
             let sign = if *part < 0.0 { "−" } else { "+" };
-            let name = name(*k).unwrap_or_else(|| "a gain".to_owned());
-            format!("{sign}{name}")
+            name(*k).map(|name| format!("{sign}{name}"))
         };
-        let few: Vec<String> = self.parts.iter().take(LISTED).map(of).collect();
+        let mut few: Vec<String> = self.parts.iter().filter_map(of).take(LISTED).collect();
+        if self.parts.iter().any(|(k, _)| name(*k).is_none()) {
+            few.push("gains of frames".to_owned());
+        }
         few.join(" ")
     }
 }

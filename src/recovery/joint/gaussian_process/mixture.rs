@@ -38,10 +38,16 @@ impl Moments {
         self.square.axpy(weight, &square, 1.0);
     }
 
-    /// The variance of each element where these are all there are.
-    fn variance(&self) -> DVector<f64> {
+    /// E (ρ − m)² of each element where these are all there are.
+    fn square_about(&self, m: &DVector<f64>) -> DVector<f64> {
         let mean = &self.mean / self.weight;
-        &self.square / self.weight - mean.component_mul(&mean)
+        let off = &mean - m;
+        &self.square / self.weight - mean.component_mul(&mean) + off.component_mul(&off)
+    }
+
+    /// Their variances.
+    fn variance(&self) -> DVector<f64> {
+        self.square_about(&(&self.mean / self.weight))
     }
 }
 
@@ -163,7 +169,7 @@ impl Seen {
         }
         let variance = all.variance();
         let if_unalike = (unalike.weight > NOT_EXCLUDED)
-            .then(|| (unalike.variance().mean() / variance.mean()).sqrt());
+            .then(|| (unalike.square_about(&all.mean).mean() / variance.mean()).sqrt());
         let bands = confidence.map(|confidence| Bands {
             confidence,
             intervals: (0..n).map(|j| interval(&parts, j, confidence)).collect(),

@@ -49,11 +49,12 @@ fn one_element_by_hand() {
         assert!((found.reflectance[0] - mean).abs() < 3e-3 * sd, "{y}");
         assert!((found.standard_error.as_ref().unwrap()[0] / sd - 1.0).abs() < 3e-3);
         assert!((found.covariance.unwrap()[(0, 0)] / (sd * sd) - 1.0).abs() < 6e-3);
-        // Without neighbours the lengths are alike: theirs are the errors without the flat picture.
+        // Without neighbours the lengths are alike: the mean picture's error without the flat one.
         let Choice::Averaged { if_unalike } = found.choice else {
             panic!("{:?}", found.choice)
         };
-        let own = (apart.2 / apart.0 - (apart.1 / apart.0).powi(2)).sqrt();
+        let [one, two] = [apart.1 / apart.0, apart.2 / apart.0];
+        let own = (two - 2.0 * one * mean + mean * mean).sqrt();
         assert!((if_unalike.unwrap() / (own / sd) - 1.0).abs() < 3e-3);
         let log = found.log_evidence.unwrap();
         assert!((log - libm::log(sum * e.sqrt())).abs() < 3e-3, "{log}");
