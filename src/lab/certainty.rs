@@ -168,6 +168,16 @@ impl Certainty {
     }
 }
 
+/// A χ²/dof below this, and as seldom by chance, is not that of independent noise.
+const CLOSE: f64 = 0.95;
+const SELDOM: f64 = 1e-6;
+
+/// Whether photographs are closer than noise of their standard errors lets them be, by χ²/dof and
+/// the probability of as large a one: the errors are too large, or entries share them.
+pub(super) fn fits_better(chi2_per_dof: f64, p: f64) -> bool {
+    chi2_per_dof < CLOSE && 1.0 - p < SELDOM
+}
+
 /// What is said of errors that follow from noisy entries, of whatever is estimated by them.
 pub(super) const FOLLOWS_ENTRIES: &str = "the standard errors of the photographs follow from their noisy entries (√n of counts, a share of each): entries that noise has made darker count more, and the light as a whole seems too dark. Of fewer than 8 pixels or spots it is not known what light to expect; give errors of the mean light";
 

@@ -3,6 +3,7 @@
 mod causes;
 
 use super::agreement::{Agreement, Entry, EntryBound, VAGUE, share};
+use super::certainty::fits_better;
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
 use super::gains::words;
 use super::score::{Deviation, Score};
@@ -13,6 +14,9 @@ use crate::num::digits::{figure, significant};
 fn percent(x: f64) -> String {
     format!("{}\u{a0}%", figure(100.0 * x, 3))
 }
+
+/// Part of the noise up to which bounds of the model change no χ² to speak of.
+const SMALL: f64 = 0.1;
 
 impl Agreement {
     /// The verdict with its numbers; `DISAGREE` in capitals where a test fails.
@@ -118,6 +122,7 @@ impl Agreement {
             told.push(("fitted first", self.fitted_first()));
         }
         told.push(("test", test));
+        told.extend(self.overstated().map(|words| ("errors", words)));
         if !self.agrees && self.evidence {
             told.push(("rejected by", self.rejected_by()));
             if !self.unmodelled.is_empty() {
@@ -140,6 +145,20 @@ impl Agreement {
             }
         }
         told
+    }
+
+    /// That the standard errors are larger than what they are those of, where no bound of the model
+    /// and no allowance makes χ² small.
+    fn overstated(&self) -> Option<String> {
+        let noise_alone =
+            self.seldom == 0 && self.relative_discretisation < SMALL * self.relative_noise;
+        let is_close = self.agrees && noise_alone && fits_better(self.chi2_per_dof, self.chi2_p);
+        is_close.then(|| {
+            format!(
+                "traced and modelled are CLOSER than the standard errors allow: these are about {} times too large, or entries share them. A model that is wrong by less than they say is not refused; give errors that are right, and all that is detected is smaller",
+                figure(self.chi2_per_dof.recip().sqrt(), 2)
+            )
+        })
     }
 
     /// The tests that the model does not pass.

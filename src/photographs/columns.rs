@@ -85,6 +85,7 @@ impl Columns {
             let name = take.path.to_string_lossy();
             let correction = Correction {
                 dark: shots.dark(take)?,
+                shortest: shots.shortest_dark(),
                 flat: flat.as_ref(),
                 noise,
                 exposure: take.exposure.unwrap_or(1.0),

@@ -9,6 +9,8 @@ use super::plane::{Averaged, same_size};
 pub struct Correction<'a> {
     /// Photographs without the laser, of the same exposure time.
     pub dark: Option<&'a Averaged>,
+    /// The same of the shortest exposure time: the noise of what is above them grows with it.
+    pub shortest: Option<&'a Averaged>,
     /// The flat field.
     pub flat: Option<&'a Flat>,
     /// The camera's noise, where it is known.
@@ -63,6 +65,7 @@ impl Flat {
     ) -> Result<Self, PhotographError> {
         let correction = Correction {
             dark,
+            shortest: dark,
             flat: None,
             noise,
             exposure: 1.0,
@@ -132,8 +135,10 @@ impl Correction<'_> {
                 let of = |a: &Averaged, below: f64| {
                     noise.of_mean([a.light[k], below], [a.rounding[k], a.share], a.frames)
                 };
-                let own = of(shot, shot.light[k] - signal);
-                let dark = self.dark.map_or(0.0, |d| of(d, d.light[k]));
+                // Electrons of the dark current are counted like those of light.
+                let below = self.shortest.map_or(0.0, |d| d.light[k]);
+                let own = of(shot, below);
+                let dark = self.dark.map_or(0.0, |d| of(d, below));
                 let flat = level_variance * flux[k] * flux[k];
                 slope[k] = noise.gain * shot.share * scale / shot.frames.max(1) as f64;
                 variance[k] = (own + dark) * scale * scale + flat;
@@ -166,9 +171,13 @@ impl Correction<'_> {
         if spread.sum::<f64>() > dark.rounding.iter().sum::<f64>() {
             return 0.0;
         }
-        let each = dark.light.iter().zip(&dark.rounding);
-        let left = each.map(|(x, rounding)| noise.of_one([*x; 2], [*rounding, dark.share]).1);
-        (left.sum::<f64>() / n).sqrt() / self.exposure
+        let below = self.shortest.unwrap_or(dark);
+        let left = |k: usize| {
+            let levels = [dark.light[k], below.light[k]];
+            noise.of_one(levels, [dark.rounding[k], dark.share]).1
+        };
+        let left: f64 = (0..dark.light.len()).map(left).sum();
+        (left / n).sqrt() / self.exposure
     }
 }
 
@@ -201,6 +210,7 @@ mod tests {
         assert!((flat.level[0] - 0.75).abs() < 1e-12 && (flat.level[1] - 2.25).abs() < 1e-12);
         let correction = Correction {
             dark: Some(&dark),
+            shortest: Some(&dark),
             flat: Some(&flat),
             noise,
             exposure: 2.0,
@@ -248,6 +258,7 @@ mod tests {
             let dark = shot(dark);
             let correction = Correction {
                 dark: Some(&dark),
+                shortest: Some(&dark),
                 flat: None,
                 noise: Some(CameraNoise::new(0.5, read).unwrap()),
                 exposure: 2.0,
@@ -277,6 +288,7 @@ mod tests {
         let (dark, mean) = (of(10.0), of(70.0));
         let correction = Correction {
             dark: Some(&dark),
+            shortest: Some(&dark),
             flat: None,
             noise,
             exposure: 1.0,
@@ -286,11 +298,35 @@ mod tests {
         assert!((found / due - 1.0).abs() < 1e-12, "{found} {due}");
     }
 
+    /// By hand, gain 0.5 and read noise 3 counts: 60 counts of light above 200 of a dark current that
+    /// the shortest dark frame, of 10 counts, has none of.
+    #[test]
+    fn a_dark_current_has_noise_of_its_own() {
+        let [shortest, dark, lit] = [10.0, 210.0, 270.0].map(|light| {
+            let mut mean = shot(&[light]);
+            mean.rounding = vec![0.0];
+            mean
+        });
+        let correction = Correction {
+            dark: Some(&dark),
+            shortest: Some(&shortest),
+            flat: None,
+            noise: Some(CameraNoise::new(0.5, 3.0).unwrap()),
+            exposure: 1.0,
+        };
+        let found = correction.apply("a", &lit).unwrap();
+        let due = (0.5 * 260.0 + 9.0) + (0.5 * 200.0 + 9.0);
+        let variance = found.variance.unwrap()[0];
+        assert_eq!(found.flux[0], 60.0);
+        assert!((variance / due - 1.0).abs() < 1e-12, "{variance} {due}");
+    }
+
     #[test]
     fn what_does_not_fit_is_refused() {
         let dark = shot(&[1.0; 2]);
         let plain = Correction {
             dark: Some(&dark),
+            shortest: Some(&dark),
             flat: None,
             noise: None,
             exposure: 1.0,
@@ -299,6 +335,7 @@ mod tests {
         assert!(error.contains("a dark frame has 2 × 1"), "{error}");
         let never = Correction {
             dark: None,
+            shortest: None,
             exposure: 0.0,
             ..plain
         };

@@ -6,11 +6,11 @@ use super::account::{ImportAccount, Imported};
 use super::columns::Columns;
 use super::error::{PhotographError, refused};
 use super::left_out::LeftOut;
-use super::list::{positions, tables};
+use super::list::{place, positions, tables};
 use super::noise::{contradicted, photon_transfer};
-use super::placing::Placing;
+use super::placing::{OFF_PLANE, Placing};
 use super::read::Reader;
-use super::set::{ChannelName, Set};
+use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
@@ -26,10 +26,43 @@ use crate::scene::Scene;
 pub fn scene_of(set: &Set, scene: Scene, folder: &Path) -> Result<Scene, PhotographError> {
     let mut reader = Reader::new(folder, None, None);
     let tables = tables(set, &mut reader, folder)?;
-    Ok(match positions(&tables)? {
-        Some(places) => scene.with_listed_spots(&places)?,
-        None => scene,
-    })
+    let Some(places) = positions(&tables)? else {
+        return Ok(scene);
+    };
+    let scene = scene.with_listed_spots(&places)?;
+    on_the_wall(&tables, &places, &scene)?;
+    Ok(scene)
+}
+
+/// Refuses a position whose z is not that of the wall at its x and y.
+fn on_the_wall(
+    tables: &[FrameTable],
+    places: &[[f64; 2]],
+    scene: &Scene,
+) -> Result<(), PhotographError> {
+    let view = &scene.camera.view;
+    let diagonal = (view.u() + view.v()).length();
+    for table in tables {
+        let own = place(table)?;
+        let spots = places.iter().zip(&scene.laser.spots);
+        let spot = spots.filter(|(place, _)| **place == own).map(|(_, s)| s);
+        let z = table.position.as_ref().and_then(|p| p.get(2)).copied();
+        for (z, spot) in z.into_iter().zip(spot) {
+            let wall = spot.target.position.z;
+            let off = (z - wall).abs();
+            if off.is_nan() || off > OFF_PLANE * diagonal {
+                return Err(refused(
+                    format!(
+                        "the position {:?} of {} is off the wall, where z is {wall}",
+                        table.position.as_deref().unwrap_or_default(),
+                        table.file
+                    ),
+                    "give x and y along the axes of the scene's spots, or these and the wall's z",
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Φcam of `scene` ([`scene_of`]) from the photographs of `set` in `folder`, of one channel where
@@ -85,7 +118,7 @@ pub fn import(
     }
     warnings.extend(rounded(columns.rounded));
     warnings.extend(shared(placing.footprints.shared()));
-    warnings.extend(line.and_then(|line| bent(&line)));
+    warnings.extend(line.and_then(|line| bent(&line, shots.differ())));
     warnings.extend(contradicted.map(misstated));
     if noise.is_some_and(|n| n.has_offset) {
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());

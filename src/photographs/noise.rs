@@ -153,6 +153,9 @@ const ROUNDS: usize = 8;
 /// stay finite where there is no light, no read noise and no rounding.
 const LEAST: f64 = 1e-6;
 
+/// Probability of the photon transfer line below which it is said not to fit.
+pub(super) const FITS: f64 = 1e-3;
+
 /// Part of the stated variance, and standard errors, by which repeats contradict it.
 const FAR: f64 = 0.1;
 const SURELY: f64 = 5.0;
@@ -222,6 +225,12 @@ pub fn photon_transfer(
     });
     let deviations: Vec<[f64; 2]> = deviations.collect();
     let chi2: f64 = deviations.iter().map(|d| d[0] * d[0]).sum();
+    let dof = (groups.len() - 2) as f64;
+    let p = chi_square_sf(chi2, dof);
+    // Off a line by more than chance, groups tell its errors by their scatter.
+    if p < FITS {
+        errors = errors.map(|error| error * (chi2 / dof).sqrt());
+    }
     let found = [noise.gain, noise.read_variance];
     if found == [0.0; 2] || found.iter().any(|x| !x.is_finite()) || !chi2.is_finite() {
         return Err(refused(
@@ -235,7 +244,7 @@ pub fn photon_transfer(
         read_variance_error: errors[1],
         groups: groups.len(),
         chi2,
-        p: chi_square_sf(chi2, (groups.len() - 2) as f64),
+        p,
         largest_deviation: deviations.iter().map(|d| d[1].abs()).fold(0.0, f64::max),
     })
 }

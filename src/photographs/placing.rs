@@ -7,8 +7,8 @@ use super::set::Set;
 use crate::geometry::DVec3;
 use crate::scene::Camera;
 
-/// Part of a view's diagonal that a mark may lie off its plane.
-const OFF_PLANE: f64 = 0.01;
+/// Part of a view's diagonal that a mark, or a spot's position, may lie off the wall.
+pub(super) const OFF_PLANE: f64 = 0.01;
 
 /// The place of the scene's pixels in the photographs.
 pub(super) struct Placing {

@@ -197,6 +197,14 @@ impl<'a> Shots<'a> {
         Ok(dead)
     }
 
+    /// The dark frames of the shortest exposure time: what is above them is counted in electrons, of
+    /// light and of the dark current.
+    pub(super) fn shortest_dark(&self) -> Option<&Averaged> {
+        let time = |(time, _): &&(Option<f64>, Averaged)| time.unwrap_or(0.0);
+        let shortest = self.darks.iter().min_by(|a, b| time(a).total_cmp(&time(b)));
+        shortest.map(|(_, dark)| dark)
+    }
+
     /// The dark frames of an exposure time.
     pub(super) fn dark(&self, take: &Take) -> Result<Option<&Averaged>, PhotographError> {
         match &self.darks[..] {
@@ -260,9 +268,9 @@ impl<'a> Shots<'a> {
         let pixels = self.size[0] * self.size[1];
         let stride = (spots * pixels).div_ceil(MOST_REPEATED);
         let mut repeated = Vec::new();
-        let visit = |spot: usize, take: &Take, mean: Averaged| {
-            let dark = self.dark(take)?;
-            let light = |k: usize| mean.light[k] - dark.map_or(0.0, |d| d.light[k]);
+        let visit = |spot: usize, _: &Take, mean: Averaged| {
+            let below = self.shortest_dark();
+            let light = |k: usize| mean.light[k] - below.map_or(0.0, |d| d.light[k]);
             for k in (0..pixels).skip(spot % stride).step_by(stride) {
                 let good = !mean.saturated[k] && !self.dead[k];
                 if let (Some(variance), true) = (mean.scatter(k), good) {
@@ -280,6 +288,22 @@ impl<'a> Shots<'a> {
         };
         self.each_spot(reader, visit)?;
         Ok(repeated)
+    }
+
+    /// Why photographs of one set may lie on several photon transfer lines, if they may.
+    pub(super) fn differ(&self) -> Option<&'static str> {
+        let several = |of: fn(&Take) -> Option<f64>| {
+            let first = self.takes.first().map(of);
+            self.takes.iter().any(|take| Some(of(take)) != first)
+        };
+        if several(|take| Some(take.gain)) {
+            return Some(
+                "the photographs have several `gain`s, and where that is the camera's each has a line of its own; import each by itself, or give `noise`",
+            );
+        }
+        several(|take| take.exposure).then_some(
+            "the photographs have several exposure times, and the noise of a dark current differs between them; import each by itself, or give `noise`",
+        )
     }
 
     /// Whether the camera's offset is in their light.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::footprints::Evenness;
 use super::left_out::LeftOut;
 use super::mapping::{Fitted, Mapping};
-use super::noise::PhotonTransferFit;
+use super::noise::{FITS, PhotonTransferFit};
 use super::placing::Placing;
 use super::read::SourceFile;
 use super::set::Set;
@@ -15,8 +15,6 @@ use crate::scene::Camera;
 
 /// Error of a mark, px, above which it was not read where it is.
 const MISREAD: f64 = 1.0;
-/// Probability of the photon transfer line below which it is said not to fit.
-const FITS: f64 = 1e-3;
 /// How far from square the pixels of a view without marks may be.
 const STRETCH: f64 = 0.02;
 /// Part of a standard error from which on what all entries share is told.
@@ -209,12 +207,12 @@ pub(super) fn misstated(ratio: f64) -> String {
     )
 }
 
-/// That the variance of repeats is no line.
-pub(super) fn bent(line: &PhotonTransferFit) -> Option<String> {
-    let why = if line.noise.has_offset {
-        "without dark frames it is not told why; give `dark`"
-    } else {
-        "the laser flickers, or the response is not linear"
+/// That the variance of repeats is no line; `differ` says that not all photographs have the same.
+pub(super) fn bent(line: &PhotonTransferFit, differ: Option<&str>) -> Option<String> {
+    let why = match differ {
+        Some(why) => why,
+        None if line.noise.has_offset => "without dark frames it is not told why; give `dark`",
+        None => "the laser flickers, or the response is not linear",
     };
     (line.p < FITS).then(|| {
         format!(

@@ -255,6 +255,48 @@ fn repeats_tell_the_noise() {
         "import --frames in/i*.png --scene tiny.toml --repeats 4 -o other",
         &["24 photographs for 8 spots with 4 each"],
     );
+    // In a list they contradict a stated noise as well.
+    let list = |gain: &dyn Fn(usize) -> f64| -> String {
+        let table = |k: usize| {
+            let (spot, gain) = (k / 3, gain(k));
+            format!("[[frame]]\nfile = \"in/i{k}.png\"\nspot = {spot}\ngain = {gain:?}\n")
+        };
+        (0..24).map(table).collect()
+    };
+    let head = "scene = \"tiny.toml\"\ndark = \"in/dark.png\"\n";
+    let noise = "noise = { gain = 50.0, read_noise = 40.0 }\n";
+    w.write("list.toml", format!("{head}{noise}{}", list(&|_| 1.0)));
+    let told = w.phicam("import list.toml -o listed").exits(0);
+    assert!(
+        told.stderr.contains("repeats of one photograph scatter by"),
+        "{}",
+        told.stderr
+    );
+    // Eight times the camera's gain in half of them: no line has both.
+    for k in 12..24 {
+        let pixels: Vec<u16> = (0..48 * 32)
+            .map(|q| {
+                let light = 50.0 + f64::from(q % 48) * 40.0;
+                (200.0 + 8.0 * (light + (0.5 * light + 16.0f64).sqrt() * normal())).round() as u16
+            })
+            .collect();
+        w.write(
+            &format!("in/i{k}.png"),
+            grey16_png([48, 32], &pixels).unwrap(),
+        );
+    }
+    let gain = |k: usize| if k < 12 { 1.0 } else { 8.0 };
+    w.write("gains.toml", format!("{head}{}", list(&gain)));
+    let told = w.phicam("import gains.toml -o gains --json").exits(0);
+    assert!(told.stderr.contains("several `gain`s"), "{}", told.stderr);
+    let account: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
+    let of = |key: &str| account["photon_transfer"][key].as_f64().unwrap();
+    // Far from either gain, by an error that says so.
+    let found = account["noise"]["gain"].as_f64().unwrap();
+    assert!(
+        of("p") < 1e-3 && of("gain_error") > 0.02 * found,
+        "{account}"
+    );
 }
 
 #[test]
@@ -445,6 +487,12 @@ fn what_does_not_fit_is_refused_and_nothing_is_written() {
     );
     let off = format!("{frames}[[marks]]\npixel = [0, 0]\nwall = [3.5, 3, 1]\n");
     import(&off, &["no point of the wall"]);
+    // A spot's position beside the wall, and one that is.
+    let at =
+        |z: f64| format!("{plain}[[frame]]\nfile = \"in/input_0.png\"\nposition = [4, 3, {z:?}]\n");
+    import(&at(5.0), &["off the wall, where z is 0", "cure: "]);
+    w.write("on.toml", at(0.0));
+    let _ = w.phicam("import on.toml -o on").exits(0);
     import(
         "scene = \"tiny.toml\"\nframe = [{ file = \"in/input_0.png\", spot = 8 }]\n",
         &["spot 8", "8 spots"],

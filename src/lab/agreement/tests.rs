@@ -163,3 +163,41 @@ fn agreement_within_a_bound_of_half_the_model_is_no_evidence() {
     let wrong = of(4.0, 0.6 * 4.0);
     assert!(wrong.evidence && !wrong.agrees);
 }
+
+/// Standard errors that are three times too large refuse nothing, and the verdict says that they
+/// are; of right ones it says nothing, whether entries share them or not.
+#[test]
+fn errors_that_are_too_large_are_told() {
+    for errors in [Errors::Independent, Errors::WithinRows] {
+        for seed in 0..20 {
+            let (traced, stderr) = sample(seed, errors == Errors::WithinRows);
+            let model = Matrix::from_element(ROWS, COLUMNS, 1.0);
+            let told = |times: f64| {
+                let stderr = &stderr * times;
+                let evidence = Evidence {
+                    traced: &traced,
+                    stderr: &stderr,
+                    model: &model,
+                    bound: None,
+                    left_out: None,
+                    eliminated: None,
+                };
+                let test = Test {
+                    significance: 1e-3,
+                    known: Certainty::new(errors, Some(REPLICATES)),
+                };
+                let facts = agree(evidence, test, None).0.facts();
+                let own = facts.into_iter().find(|(name, _)| *name == "errors");
+                own.map(|(_, words)| words)
+            };
+            assert_eq!(told(1.0), None, "{errors:?} {seed}");
+            if errors == Errors::Independent {
+                let words = told(3.0).unwrap();
+                assert!(
+                    words.contains("CLOSER") && words.contains(" 3.0 times"),
+                    "{words}"
+                );
+            }
+        }
+    }
+}

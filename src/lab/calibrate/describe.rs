@@ -6,7 +6,7 @@ mod tables;
 
 use super::{Calibrated, Calibration};
 use crate::lab::certainty::FOLLOWS_ENTRIES;
-use crate::lab::certainty::hang_together;
+use crate::lab::certainty::{fits_better, hang_together};
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::lab::which_errors::which_errors;
@@ -137,7 +137,10 @@ impl Calibration {
                 "With it the photographs fit: χ²/dof {} (p = {}).{}",
                 figure(self.misfit, 3),
                 figure(p, 2),
-                if self.asks_for_elements() || self.shared.is_some() {
+                if fits_better(self.misfit, p) {
+                    " That is CLOSER than the standard errors allow: they are too large, or entries \
+                     share them, and the errors of the geometry are not those of the noise."
+                } else if self.asks_for_elements() || self.shared.is_some() {
                     ""
                 } else {
                     " The errors are those of the noise."

@@ -1,6 +1,6 @@
 //! Standard errors, bands and probabilities that say less than they seem to.
 
-use crate::lab::certainty::FOLLOWS_ENTRIES;
+use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better};
 use crate::lab::fit::Judged;
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::num::digits::{figure, significant};
@@ -10,9 +10,6 @@ use crate::recovery::{Choice, Method, Recovered};
 pub(super) const HALF: f64 = 0.5;
 /// A share of an element below which the photographs do not determine it.
 pub(super) const DETERMINED: f64 = 0.9;
-/// A χ²/dof below this, and as seldom by chance, is not that of independent noise.
-const CLOSE: f64 = 0.95;
-const SELDOM: f64 = 1e-6;
 /// What the integrals move is told from this part of a standard error on, both counted.
 const NOTABLE: f64 = 0.5;
 /// Standard errors larger by more than this are others.
@@ -75,7 +72,7 @@ pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
 /// Photographs closer to the picture than their errors let them be.
 pub(super) fn overstated(judged: &Judged) -> Option<String> {
     let fit = judged.fit.as_ref().filter(|_| judged.shared().is_none())?;
-    (fit.chi2_per_dof < CLOSE && 1.0 - fit.p < SELDOM).then(|| {
+    fits_better(fit.chi2_per_dof, fit.p).then(|| {
         format!(
             "it fits BETTER than the standard errors allow (χ²/dof {}): they are too large, or entries \
              share them, and then the errors of the picture are too small. Of an exposed render take \

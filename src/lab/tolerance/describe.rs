@@ -98,7 +98,7 @@ impl Tolerance {
             format!(" No size tried here matters of {}.", listed(&free))
         };
         format!(
-            "What must be measured how well for an MTF of {wished}, each alone and the rest right: {critical}.{others} Where several are off at once each has to be better by about the square root of their number. What light itself tells of the geometry `phicam calibrate` finds."
+            "What must be measured how well for an MTF of {wished}, each alone, to either side, and the rest right: {critical}.{others} Where several are off at once each has to be better by about the square root of their number. What light itself tells of the geometry `phicam calibrate` finds."
         )
     }
 
@@ -123,7 +123,7 @@ impl Tolerance {
             .iter()
             .map(|p| (p, p.rows.first(), self.lost(p)));
         Table {
-            caption: "Change of Φcam where the error is small, and where the pattern is lost"
+            caption: "Change of Φcam where the error is small, and where the pattern is lost, to the side where either is worse"
                 .to_owned(),
             ..Table::of(
                 things,

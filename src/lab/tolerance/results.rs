@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a misplacement of one size does.
+/// What a misplacement of one size does: to the side to which it does more.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Misplacement {
-    /// Degrees, or the scene's unit of length.
+    /// Degrees, percent, or the scene's unit of length.
     pub size: f64,
     /// ‖Φ(misplaced) − Φ‖/‖Φ‖.
     pub change: f64,
@@ -14,6 +14,19 @@ pub struct Misplacement {
     /// Mean raw MTF of the recovery with the misplaced model; absent where the object has no
     /// contrast.
     pub mtf: Option<f64>,
+}
+
+impl Misplacement {
+    /// What is worse of this and the same to the other side, each by itself.
+    #[must_use]
+    pub(super) fn or_worse(self, other: &Self) -> Self {
+        Self {
+            size: self.size,
+            change: self.change.max(other.change),
+            after_scale: self.after_scale.max(other.after_scale),
+            mtf: self.mtf.zip(other.mtf).map(|(a, b)| a.min(b)),
+        }
+    }
 }
 
 /// One thing that is assumed wrongly.

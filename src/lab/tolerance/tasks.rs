@@ -107,6 +107,38 @@ impl ToleranceTasks {
         let found: Option<Vec<f64>> = bench.photographs.iter().map(recovered).collect();
         Ok(found.map(|m| tree_sum(&m) / m.len() as f64))
     }
+
+    /// What one thing that is misplaced by `size` does; none where the scene does not allow it.
+    fn wrong(
+        &self,
+        bench: &Bench,
+        what: &Misplaced,
+        size: f64,
+    ) -> Result<Option<Misplacement>, LabError> {
+        let Some(wrong) = what.apply(&self.scene, size) else {
+            return Ok(None);
+        };
+        let light = |scene: &Scene| -> Result<Matrix, ModelError> {
+            Ok(converged(scene, Kernel::Physical, Extent::FULL)?.phi)
+        };
+        let phi = light(&wrong)?;
+        // A wall that bends asks what stands in the way ray by ray: it is held against itself.
+        let nearly = match what.size {
+            Size::Positive if is_obstructed(&self.scene) => {
+                what.apply(&self.scene, NEARLY_FLAT * size)
+            }
+            _ => None,
+        };
+        let nearly = nearly.map(|scene| light(&scene)).transpose()?;
+        let truth = nearly.as_ref().unwrap_or(&bench.truth);
+        let scale = phi.dot(truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
+        Ok(Some(Misplacement {
+            size: size.abs(),
+            change: (&phi - truth).norm() / truth.norm(),
+            after_scale: (&phi * scale - truth).norm() / truth.norm(),
+            mtf: self.mtf(bench, &wrong)?,
+        }))
+    }
 }
 
 impl Study for ToleranceTasks {
@@ -140,29 +172,16 @@ impl Study for ToleranceTasks {
         };
         let what = &ALL[at / SIZES.len()];
         let size = SIZES[at % SIZES.len()] * unit(what, &self.scene).0;
-        let Some(wrong) = what.apply(&self.scene, size) else {
-            return Ok(Placed::Wrong(None));
+        let more = self.wrong(bench, what, size)?;
+        // Nothing says to which side a thing is misplaced.
+        let less = match what.size {
+            Size::Length | Size::Angle | Size::Percent => self.wrong(bench, what, -size)?,
+            Size::Random | Size::Positive => None,
         };
-        let light = |scene: &Scene| -> Result<Matrix, ModelError> {
-            Ok(converged(scene, Kernel::Physical, Extent::FULL)?.phi)
-        };
-        let phi = light(&wrong)?;
-        // A wall that bends asks what stands in the way ray by ray: it is held against itself.
-        let nearly = match what.size {
-            Size::Positive if is_obstructed(&self.scene) => {
-                what.apply(&self.scene, NEARLY_FLAT * size)
-            }
-            _ => None,
-        };
-        let nearly = nearly.map(|scene| light(&scene)).transpose()?;
-        let truth = nearly.as_ref().unwrap_or(&bench.truth);
-        let scale = phi.dot(truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
-        Ok(Placed::Wrong(Some(Misplacement {
-            size,
-            change: (&phi - truth).norm() / truth.norm(),
-            after_scale: (&phi * scale - truth).norm() / truth.norm(),
-            mtf: self.mtf(bench, &wrong)?,
-        })))
+        Ok(Placed::Wrong(match (more, less) {
+            (Some(more), Some(less)) => Some(more.or_worse(&less)),
+            (more, less) => more.or(less),
+        }))
     }
 
     fn fits(&self, _: &Bench, index: usize, part: &Placed) -> bool {

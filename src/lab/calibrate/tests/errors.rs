@@ -51,6 +51,26 @@ fn errors_that_hang_together_are_told() {
     }
 }
 
+/// Standard errors that are three times too large fit anything: that is said, in place of that the
+/// errors are those of the noise.
+#[test]
+fn errors_that_are_too_large_are_told() {
+    let scene = small("bench", 6);
+    let (phi, stderr) = photographs(&scene, 2, 0.01, 1);
+    for times in [1.0, 3.0] {
+        let stderr = &stderr * times;
+        let photographs = unexplained(&phi, &stderr);
+        let found = plan(&["hidden.normal"], 2).calibrate(&scene, &photographs, Control::none());
+        let notes = found.unwrap().describe().notes.concat();
+        assert_eq!(notes.contains("CLOSER than"), times > 1.0, "{notes}");
+        assert_eq!(
+            notes.contains("errors are those of"),
+            times == 1.0,
+            "{notes}"
+        );
+    }
+}
+
 /// Wide spots past a thin rod, photographs traced, which knows of no elements: the stated error
 /// knows what their light is not integrated to, and no geometry is refuted for it.
 #[test]

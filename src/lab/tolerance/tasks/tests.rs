@@ -66,3 +66,33 @@ fn the_right_geometry_recovers_the_board() {
     };
     assert!((mtf - 1.0).abs() < 1e-3, "{mtf}");
 }
+
+/// Nothing says to which side a thing is misplaced: what it does is the worse of both, which
+/// differ. A sagitta and what is by chance have no sides.
+#[test]
+fn the_worse_side_counts() {
+    let tasks = ToleranceTasks::new(&small("bench"), 0.01, 0.9);
+    let bench = tasks.context(Control::none()).unwrap();
+    let at = |name: &str| ALL.iter().position(|what| what.name == name).unwrap();
+    for (name, differ) in [
+        ("S2 along its normal", true),
+        ("wall bent (sagitta)", false),
+    ] {
+        let what = &ALL[at(name)];
+        // The last but one size of each.
+        let task = 1 + at(name) * SIZES.len() + SIZES.len() - 2;
+        let Placed::Wrong(Some(found)) = tasks.task(&bench, task, Control::none()).unwrap() else {
+            panic!("{name} is not misplaced");
+        };
+        let sides = [found.size, -found.size];
+        let both = sides.map(|size| tasks.wrong(&bench, what, size).unwrap());
+        let [more, less] = both.map(|side| side.map(|s| (s.change, s.mtf.unwrap())));
+        let more = more.unwrap();
+        let worse = match less.filter(|_| differ) {
+            Some(less) => (more.0.max(less.0), more.1.min(less.1)),
+            None => more,
+        };
+        assert_eq!((found.change, found.mtf.unwrap()), worse, "{name}");
+        assert!(!differ || (less.unwrap().1 - more.1).abs() > 1e-3, "{name}");
+    }
+}
