@@ -1657,8 +1657,8 @@ BREAKS = [
     Break(
         "Rounding that all dark pixels share is told",
         "src/photographs/correct.rs",
-        "return 0.0;\n        }\n        let each = dark",
-        "}\n        let each = dark",
+        "return 0.0;\n        }\n        let below = self.shortest",
+        "}\n        let below = self.shortest",
         "lib",
         "photographs::correct::tests::rounding_that_all_pixels_share_is_told",
         11,

@@ -3,8 +3,8 @@
 //! Errors that follow from the noisy entries, σ² = a + b x + c x² of every entry x (√n of counts n,
 //! a share of each entry), make entries too certain that noise has made darker, and the picture too
 //! dark. That law is exact, which errors of any other origin do not follow, and of the light that
-//! is [`expected`] of each entry it holds for the noise itself, counts of none included. Errors from
-//! few replicates are [`Pooled`].
+//! is [`expected`] of each entry it holds for the noise itself, counts of none included. Errors
+//! from few replicates are [`Pooled`].
 
 use std::borrow::Cow;
 

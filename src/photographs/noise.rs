@@ -3,13 +3,13 @@
 //! > var = g·(s − d) + σ² + LSB²/12
 //!
 //! in counts²: the photon transfer line (Janesick, *Photon Transfer*, 2007; EMVA 1288) with the
-//! gain g (counts per electron), the light above the dark frames s − d, the read noise σ with the
-//! dark current's, and the rounding to integers. Without dark frames the line is over s, and its
-//! value at 0 is σ² − g·o with the unknown offset o. The mean of n channels has the n-th part of
-//! the variance. Averaging F frames divides all but what rounding leaves where other noise is too
-//! small to move values from one integer to the next: with the variance v before rounding that is
-//! LSB²·B(v/LSB²), by the Fourier series of a rounding error (Widrow and Kollár, *Quantization
-//! Noise*, 2008)
+//! gain g (counts per electron), what is above the dark frames of the shortest exposure time s − d,
+//! the read noise σ with that of their dark current, and the rounding to integers. Without dark
+//! frames the line is over s, and its value at 0 is σ² − g·o with the unknown offset o. The mean of
+//! n channels has the n-th part of the variance. Averaging F frames divides all but what rounding
+//! leaves where other noise is too small to move values from one integer to the next: with the
+//! variance v before rounding that is LSB²·B(v/LSB²), by the Fourier series of a rounding error
+//! (Widrow and Kollár, *Quantization Noise*, 2008)
 //!
 //! > B(x) = Σ_n exp(−4π²n²x)/(2π²n²),   B(0) = 1/12
 
