@@ -197,8 +197,8 @@ impl<'a> Shots<'a> {
         Ok(dead)
     }
 
-    /// The dark frames of the shortest exposure time: what is above them is counted in electrons, of
-    /// light and of the dark current.
+    /// The dark frames of the shortest exposure time: what is above them is counted in electrons,
+    /// of light and of the dark current.
     pub(super) fn shortest_dark(&self) -> Option<&Averaged> {
         let time = |(time, _): &&(Option<f64>, Averaged)| time.unwrap_or(0.0);
         let shortest = self.darks.iter().min_by(|a, b| time(a).total_cmp(&time(b)));

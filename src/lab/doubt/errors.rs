@@ -141,7 +141,7 @@ pub(super) fn alike_untold(found: &Recovered) -> Option<String> {
     Some(format!(
         "the photographs do not say how alike neighbouring elements are: standard errors and bands take \
          that from pictures in general. Of elements that have nothing in common with their neighbours \
-         they are {} times as large. Use fewer --elements, or believe them of usual pictures only",
+         they are {} times as large in the mean, and more where these look smooth by chance. Use fewer --elements, or believe them of usual pictures only",
         significant(times, 2)
     ))
 }
