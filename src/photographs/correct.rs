@@ -298,8 +298,8 @@ mod tests {
         assert!((found / due - 1.0).abs() < 1e-12, "{found} {due}");
     }
 
-    /// By hand, gain 0.5 and read noise 3 counts: 60 counts of light above 200 of a dark current that
-    /// the shortest dark frame, of 10 counts, has none of.
+    /// By hand, gain 0.5 and read noise 3 counts: 60 counts of light above 200 of a dark current
+    /// that the shortest dark frame, of 10 counts, has none of.
     #[test]
     fn a_dark_current_has_noise_of_its_own() {
         let [shortest, dark, lit] = [10.0, 210.0, 270.0].map(|light| {
