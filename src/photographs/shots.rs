@@ -301,8 +301,8 @@ impl<'a> Shots<'a> {
                 "the photographs have several `gain`s, and where that is the camera's each has a line of its own; import each by itself, or give `noise`",
             );
         }
-        several(|take| take.exposure).then_some(
-            "the photographs have several exposure times, and the noise of a dark current differs between them; import each by itself, or give `noise`",
+        (self.has_offset() && several(|take| take.exposure)).then_some(
+            "the photographs have several exposure times, and a dark current differs between them; give `dark` of each",
         )
     }
 
