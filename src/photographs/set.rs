@@ -200,7 +200,7 @@ pub enum DeadTable {
 pub struct NoiseTable {
     /// Counts per electron: variance for each count of light.
     pub gain: f64,
-    /// Root mean square, counts.
+    /// Root mean square, counts, with that of the dark current of the shortest exposure time.
     pub read_noise: f64,
 }
 
