@@ -6,11 +6,12 @@
 //!
 //! > cov θ = (F + Λ)⁻¹,   or where more than noise is left (F + Λ)⁻¹ M (F + Λ)⁻¹,   M = Σ_c u_c u_cᵀ
 //!
-//! if that is larger: u_c is what frame c, or one of 4 × 4 blocks of pixels, adds to the slope, so
-//! that what the model lacks counts once a frame or block (Huber 1967; Liang and Zeger 1986). Where
-//! the likelihood itself, the others following, falls by ½ farther out, that is the error. The
-//! picture's own covariance is P + (RX) cov θ (RX)ᵀ. What a picture of twice as many elements along
-//! each side would move is an error too where the photographs ask for it.
+//! if that is larger: u_c is what frame c says where only the others are fitted ([`left_out`]), or
+//! what one of 4 × 4 blocks of pixels adds to the slope, so that what the model lacks counts once a
+//! frame or block (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others
+//! following, falls by ½ farther out, that is the error. The picture's own covariance is P + (RX)
+//! cov θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
+//! where the photographs ask for it.
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -46,6 +47,7 @@ mod field;
 mod finish;
 mod geometry;
 mod identified;
+mod left_out;
 mod picture;
 mod posterior;
 mod profile;

@@ -172,7 +172,7 @@ impl<'a> Problem<'a> {
 
     /// The noise of a pixel in the middle of all that is `factor` times the stated one, over its
     /// light; 0 at the stated one, for many pixels know together what none knows alone.
-    fn relative(&self, factor: f64) -> f64 {
+    pub(super) fn relative(&self, factor: f64) -> f64 {
         match self.photographs.stderr {
             Some(_) if factor == 1.0 => 0.0,
             _ => FIRST * factor / self.first,

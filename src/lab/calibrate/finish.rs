@@ -44,7 +44,8 @@ impl CalibrationPlan {
         let known = problem.photographs.certainty;
         let problem = with_field.as_ref().unwrap_or(problem);
         let information = problem.information(&best.slope);
-        let covariance = Cholesky::new(&information).ok_or(LabError::DARK)?.inverse();
+        let information = Cholesky::new(&information).ok_or(LabError::DARK)?;
+        let covariance = information.inverse();
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
         let p = is_noise_known.then(|| known.by_noise(best.value.chi2, dof));
@@ -53,8 +54,12 @@ impl CalibrationPlan {
             let moved = &covariance * scores;
             &moved * moved.transpose()
         };
-        let [by_frames, by_blocks] = [&best.slope.by_frames, &best.slope.by_blocks].map(robust);
         let enough_frames = problem.photographs.phi.ncols() > 2;
+        let by_frames = (more_than_noise && enough_frames)
+            .then(|| problem.by_frames(best, &information))
+            .transpose()?;
+        let by_frames = by_frames.as_ref().map(robust);
+        let by_blocks = robust(&best.slope.by_blocks);
         let scene = problem.geometry.scene;
         let names = self.names(problem);
         let finer = problem.finer(best, &covariance)?;
@@ -66,7 +71,7 @@ impl CalibrationPlan {
         for (k, identified) in told.into_iter().enumerate() {
             let root = |m: &Matrix| m[(k, k)].max(0.0).sqrt();
             let by_curvature = root(&covariance);
-            let by_frames = (more_than_noise && enough_frames).then(|| root(&by_frames));
+            let by_frames = by_frames.as_ref().map(root);
             // Along the cosines there are no blocks of pixels.
             let by_blocks = (more_than_noise && field.is_none()).then(|| root(&by_blocks));
             let profile = profile::profile(problem, best, &covariance, k)?;

@@ -51,7 +51,7 @@ pub(super) struct Value {
     pub rho: DVector<f64>,
     z: DVector<f64>,
     /// Of 1 + RᵀHR.
-    factor: Cholesky,
+    pub factor: Cholesky,
 }
 
 /// The same with slope and curvature.
@@ -65,8 +65,7 @@ pub(super) struct Slope {
     pub covariance: Matrix,
     /// R X: −∂ρ̂/∂θ, elements × unknowns.
     pub shift: Matrix,
-    /// Σ B⊥ᵀ(y − Aρ̂) of each frame, unknowns × frames, and of each block of pixels.
-    pub by_frames: Matrix,
+    /// Σ B⊥ᵀ(y − Aρ̂) of each block of pixels, unknowns × blocks.
     pub by_blocks: Matrix,
 }
 
@@ -91,7 +90,7 @@ impl Seen<'_> {
     }
 
     /// Whitened photograph and light of the elements in frame l.
-    fn frame(&self, light: &Light, l: usize) -> Result<[Matrix; 2], LabError> {
+    pub(super) fn frame(&self, light: &Light, l: usize) -> Result<[Matrix; 2], LabError> {
         let photograph = self.photographs.phi.columns(l, 1).into_owned();
         let light = self.along(light.frame(l));
         let mut both = self.white(l, &[&photograph, &light])?.into_iter();
@@ -213,14 +212,7 @@ impl Seen<'_> {
         let factor = &value.factor;
         let half = factor.forward(prior.root.transpose());
         let covariance = tr_product(&half, &half);
-        let first = (0..self.frames())
-            .into_par_iter()
-            .map(|l| self.columns_of(light, l, &value.rho, &covariance, unknowns));
-        let mut first: Vec<Columns> = first.collect::<Result<_, _>>()?;
-        if let Some(common) = self.common {
-            let mut all: Vec<&mut Matrix> = first.iter_mut().map(|own| &mut own.b).collect();
-            common.take_out(&mut all);
-        }
+        let first = self.columns(light, value, prior, unknowns)?;
         let n = light.elements();
         let mut side = Matrix::zeros(n, unknowns);
         let (mut known, mut occam) = (DVector::zeros(unknowns), DVector::zeros(unknowns));
@@ -240,13 +232,10 @@ impl Seen<'_> {
         let second: Vec<Left> = second.collect::<Result<_, _>>()?;
         let mut curvature = tr_product(&x, &x);
         let mut slope = occam - x.tr_mul(&value.z);
-        let mut by_frames = Matrix::zeros(unknowns, self.frames());
         let mut by_blocks = Matrix::zeros(unknowns, BLOCKS * BLOCKS);
-        for (l, own) in second.iter().enumerate() {
+        for own in &second {
             curvature += &own.square;
-            let score = own.by_blocks.column_sum();
-            slope -= &score;
-            by_frames.set_column(l, &score);
+            slope -= own.by_blocks.column_sum();
             by_blocks += &own.by_blocks;
         }
         Ok(Slope {
@@ -255,9 +244,29 @@ impl Seen<'_> {
             known,
             covariance,
             shift,
-            by_frames,
             by_blocks,
         })
+    }
+
+    /// B of every frame, and what it gives with A.
+    pub(super) fn columns(
+        &self,
+        light: &Light,
+        value: &Value,
+        prior: &Prior,
+        unknowns: usize,
+    ) -> Result<Vec<Columns>, LabError> {
+        let half = value.factor.forward(prior.root.transpose());
+        let covariance = tr_product(&half, &half);
+        let all = (0..self.frames())
+            .into_par_iter()
+            .map(|l| self.columns_of(light, l, &value.rho, &covariance, unknowns));
+        let mut all: Vec<Columns> = all.collect::<Result<_, _>>()?;
+        if let Some(common) = self.common {
+            let mut b: Vec<&mut Matrix> = all.iter_mut().map(|own| &mut own.b).collect();
+            common.take_out(&mut b);
+        }
+        Ok(all)
     }
 
     /// B of frame l, and what it gives with A.
@@ -320,8 +329,8 @@ impl Seen<'_> {
 
 /// B of a frame: pixels × unknowns, AᵀB, tr(P Aᵀ∂_kA). Light that all frames share is no part of A,
 /// so that both are what they would be without it in B.
-struct Columns {
-    b: Matrix,
+pub(super) struct Columns {
+    pub b: Matrix,
     side: Matrix,
     occam: DVector<f64>,
 }
