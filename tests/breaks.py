@@ -1999,8 +1999,8 @@ BREAKS = [
     Break(
         "What a frame takes of the fit is allowed for in errors by frames",
         "src/lab/calibrate/left_out.rs",
-        "score += product(&tr_product(&b, &fitted), &back);",
-        "score += product(&tr_product(&b, &fitted), &(back * 0.0));",
+        "score += tr_product(&b, &fitted) * back;",
+        "score += tr_product(&b, &fitted) * back * 0.0;",
         "lib",
         "lab::calibrate::tests::errors::errors_by_frames_are_those_without_each",
         16,

@@ -11,6 +11,7 @@
 use rayon::prelude::*;
 
 use super::descent::{Problem, State};
+use super::posterior::Columns;
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;
 use crate::num::linalg::{Cholesky, product, tr_product};
@@ -28,22 +29,21 @@ impl Problem<'_> {
         let unknowns = self.unknowns();
         let columns = seen.columns(&light, &best.value, &best.prior, unknowns)?;
         let half = best.value.factor.forward(best.prior.root.transpose());
-        let of = |(l, own): (usize, &super::posterior::Columns)| -> Result<_, LabError> {
+        let of = |(l, own): (usize, &Columns)| -> Result<_, LabError> {
             let [y, a] = seen.frame(&light, l)?;
-            let left = y - &a * Matrix::from_columns(&[best.value.rho.clone()]);
+            let left = y.column(0) - &a * &best.value.rho;
             let b = &own.b - product(&a, &best.slope.shift);
             let of_picture = product(&a, &half.transpose());
             let of_geometry = information.forward(b.transpose()).transpose();
             let fitted = beside(&of_picture, &of_geometry);
             let kept =
                 Matrix::identity(fitted.ncols(), fitted.ncols()) - tr_product(&fitted, &fitted);
-            let mut score = tr_product(&b, &left);
+            let mut score = b.tr_mul(&left);
             if let Some(kept) = Cholesky::new(&kept) {
-                let taken = tr_product(&fitted, &left).column(0).into_owned();
-                let back = Matrix::from_columns(&[kept.solve(&taken)]);
-                score += product(&tr_product(&b, &fitted), &back);
+                let back = kept.solve(&fitted.tr_mul(&left));
+                score += tr_product(&b, &fitted) * back;
             }
-            Ok(score.column(0).into_owned())
+            Ok(score)
         };
         let scores: Vec<_> = columns
             .par_iter()
