@@ -26,12 +26,12 @@ impl Problem<'_> {
     ) -> Result<Matrix, LabError> {
         let seen = self.seen(best.factor);
         let light = self.light(&best.values, self.relative(best.factor), true)?;
-        let unknowns = self.unknowns();
-        let columns = seen.columns(&light, &best.value, &best.prior, unknowns)?;
+        let (rho, covariance) = (&best.value.rho, &best.slope.covariance);
+        let columns = seen.columns(&light, rho, covariance, self.unknowns())?;
         let half = best.value.factor.forward(best.prior.root.transpose());
         let of = |(l, own): (usize, &Columns)| -> Result<_, LabError> {
             let [y, a] = seen.frame(&light, l)?;
-            let left = y.column(0) - &a * &best.value.rho;
+            let left = y.column(0) - &a * rho;
             let b = &own.b - product(&a, &best.slope.shift);
             let of_picture = product(&a, &half.transpose());
             let of_geometry = information.forward(b.transpose()).transpose();

@@ -212,7 +212,7 @@ impl Seen<'_> {
         let factor = &value.factor;
         let half = factor.forward(prior.root.transpose());
         let covariance = tr_product(&half, &half);
-        let first = self.columns(light, value, prior, unknowns)?;
+        let first = self.columns(light, &value.rho, &covariance, unknowns)?;
         let n = light.elements();
         let mut side = Matrix::zeros(n, unknowns);
         let (mut known, mut occam) = (DVector::zeros(unknowns), DVector::zeros(unknowns));
@@ -252,15 +252,13 @@ impl Seen<'_> {
     pub(super) fn columns(
         &self,
         light: &Light,
-        value: &Value,
-        prior: &Prior,
+        rho: &DVector<f64>,
+        covariance: &Matrix,
         unknowns: usize,
     ) -> Result<Vec<Columns>, LabError> {
-        let half = value.factor.forward(prior.root.transpose());
-        let covariance = tr_product(&half, &half);
         let all = (0..self.frames())
             .into_par_iter()
-            .map(|l| self.columns_of(light, l, &value.rho, &covariance, unknowns));
+            .map(|l| self.columns_of(light, l, rho, covariance, unknowns));
         let mut all: Vec<Columns> = all.collect::<Result<_, _>>()?;
         if let Some(common) = self.common {
             let mut b: Vec<&mut Matrix> = all.iter_mut().map(|own| &mut own.b).collect();
