@@ -141,10 +141,6 @@ impl Study for ConvergenceTasks {
     type Result = Convergence;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "convergence"
-    }
-
     /// Both samplers: of the two estimators whose paths serve all spots only one is counted, the
     /// other has next to none.
     fn work(&self) -> Work {

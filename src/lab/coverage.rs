@@ -169,10 +169,6 @@ impl Study for CoverageTasks {
     type Result = Coverage;
     type Error = Stopped;
 
-    fn name(&self) -> &'static str {
-        "coverage"
-    }
-
     fn tasks(&self) -> usize {
         self.plan.methods.len() * self.groups()
     }

@@ -68,9 +68,6 @@
 //!     type Result = Falloff;
 //!     type Error = Error;
 //!
-//!     fn name(&self) -> &'static str {
-//!         "dark-wall"
-//!     }
 //!     fn tasks(&self) -> usize {
 //!         self.albedos.len()
 //!     }

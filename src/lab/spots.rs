@@ -200,10 +200,6 @@ impl Study for SpotsStudy {
     type Result = SpotRanks;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "spots"
-    }
-
     fn tasks(&self) -> usize {
         self.spots.len()
     }

@@ -79,9 +79,6 @@ pub trait Study: Sync {
     /// Why there is none.
     type Error: Error + From<Stopped> + Send + Sync + 'static;
 
-    /// Its name on the command line.
-    fn name(&self) -> &'static str;
-
     /// How many tasks there are.
     fn tasks(&self) -> usize;
 

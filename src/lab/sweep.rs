@@ -125,10 +125,6 @@ impl Study for SweepTasks {
     type Result = Sweep;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "sweep"
-    }
-
     fn tasks(&self) -> usize {
         self.values.len()
     }

@@ -135,10 +135,6 @@ impl Study for BrdfTasks {
     type Result = BrdfStudy;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "brdf"
-    }
-
     fn tasks(&self) -> usize {
         self.assumed.len() + 1
     }

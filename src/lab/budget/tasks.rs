@@ -159,10 +159,6 @@ impl Study for BudgetTasks {
     type Result = ErrorBudget;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "budget"
-    }
-
     fn work(&self) -> Work {
         Work::samples(
             &self.scene,

@@ -109,10 +109,6 @@ impl Study for ExperimentTasks {
     type Result = Experiment;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "experiment"
-    }
-
     fn tasks(&self) -> usize {
         let levels = self.plan.glares.len() + self.plan.exposures.len();
         2 * levels * self.plan.seeds as usize

@@ -163,10 +163,6 @@ impl Study for IndicatorTasks {
     type Result = Indicator;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "indicator"
-    }
-
     fn tasks(&self) -> usize {
         self.arrangements.len() + self.chosen.len()
     }

@@ -179,10 +179,6 @@ impl Study for LayoutTasks {
     type Result = Layouts;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "layout"
-    }
-
     fn tasks(&self) -> usize {
         2 + PUBLISHED.len()
     }

@@ -152,10 +152,6 @@ impl Study for NoiseTasks {
     type Result = NoiseStudy;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "noise"
-    }
-
     fn tasks(&self) -> usize {
         self.objects.len() * self.groups() + self.renders.len()
     }

@@ -88,10 +88,6 @@ impl Study for OccluderTasks {
     type Result = Occluders;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "occluder"
-    }
-
     fn tasks(&self) -> usize {
         self.plan.kinds.len() * self.plan.spots.len()
     }

@@ -109,10 +109,6 @@ impl Study for PowerTasks {
     type Result = Power;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "power"
-    }
-
     fn work(&self) -> Work {
         let all = |for_all_spots: bool| {
             let kinds = self.kinds().into_iter();

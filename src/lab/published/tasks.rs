@@ -138,10 +138,6 @@ impl Study for ReproduceTasks {
     type Result = Vec<(Item, Finding)>;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "reproduce"
-    }
-
     fn tasks(&self) -> usize {
         self.tasks.len()
     }

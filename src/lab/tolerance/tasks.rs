@@ -147,10 +147,6 @@ impl Study for ToleranceTasks {
     type Result = Tolerance;
     type Error = LabError;
 
-    fn name(&self) -> &'static str {
-        "tolerance"
-    }
-
     fn tasks(&self) -> usize {
         1 + ALL.len() * SIZES.len()
     }
