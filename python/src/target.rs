@@ -1,5 +1,6 @@
 //! The built-in target pictures.
 
+use phicam::num::named::Named;
 use phicam::scene::target::{MOST_SIDE, Target};
 use pyo3::prelude::*;
 

@@ -9,6 +9,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::output;
 use crate::image::Transfer;
+use crate::num::named::Named;
 use crate::report;
 use crate::scene::mesh::{FaceValues, Generator, Triangles, to_ply};
 use crate::scene::target::Target;

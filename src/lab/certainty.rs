@@ -1,17 +1,20 @@
 //! What is known of standard errors.
 
+use crate::num::named::named;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::transport::{Estimator, Plan};
 
-/// How the errors of traced entries hang together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Errors {
-    /// Every entry has its own random numbers.
-    Independent,
-    /// Entries of one pixel share theirs: only different rows are independent.
-    WithinRows,
-    /// All entries share theirs.
-    Everywhere,
+named! {
+    /// How the errors of traced entries hang together.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Errors {
+        /// Every entry has its own random numbers.
+        Independent = "independent": "None",
+        /// Entries of one pixel share theirs: only different rows are independent.
+        WithinRows = "pixel": "Those of one pixel, as of estimator shared",
+        /// All entries share theirs.
+        Everywhere = "all": "All, as of estimator factored",
+    }
 }
 
 /// A part that is common, times the spots, above which errors are no longer independent: 5 % of the
@@ -19,18 +22,6 @@ pub enum Errors {
 const NOTICED: f64 = 0.1;
 
 impl Errors {
-    /// Every way.
-    pub const ALL: [Errors; 3] = [Self::Independent, Self::WithinRows, Self::Everywhere];
-
-    /// The name by which it is asked for.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::WithinRows => "pixel",
-            Self::Everywhere => "all",
-        }
-    }
-
     /// Those of an estimator.
     pub fn of(estimator: Estimator) -> Self {
         match estimator {

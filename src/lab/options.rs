@@ -53,22 +53,6 @@ pub struct Opt {
     pub alias: Option<&'static str>,
 }
 
-/// The estimators.
-pub const ESTIMATORS: &[(&str, &str)] = &[
-    ("independent", "Every (pixel, spot) entry has its own paths"),
-    ("shared", "The paths of a pixel serve all spots"),
-    (
-        "factored",
-        "The points between the walls serve all pixels and all spots",
-    ),
-];
-
-/// The sources of random numbers.
-pub const SAMPLERS: &[(&str, &str)] = &[
-    ("pcg", "Independent random numbers"),
-    ("sobol", "Owen-scrambled Sobol' points"),
-];
-
 /// The whole number that `text` is, as 10000 or 1e4.
 fn whole(text: &str) -> Option<u64> {
     Decimal::parse(text)?.whole()

@@ -12,12 +12,13 @@ use super::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Spacing, Table,
 };
 use super::grey::{self, Grey, LEVELS};
-use super::noise_law::{NOISE_LAWS, NoiseLaw};
+use super::noise_law::NoiseLaw;
 use super::options::{Opt, OptionError};
 use super::registered::{Registered, prepared};
 use super::study::{Sharing, Study};
 use crate::model::{Kernel, MatrixModel};
 use crate::num::digits::figure;
+use crate::num::named::Named;
 use crate::scene::{Scene, quoted};
 use crate::transport::Control;
 
@@ -46,7 +47,7 @@ pub(super) const STUDY: Registered = Registered {
                 "has no meaning here",
                 "use a number above 0 and not above 1, e.g. 0.01",
             ),
-        Opt::choice("law", "How the noise goes with the light", NOISE_LAWS).or("relative"),
+        Opt::choice("law", "How the noise goes with the light", NoiseLaw::NAMES).or("relative"),
         Opt::whole("elements", "Elements a side, in place of the scene's").within(1, 1024),
     ],
     prepare: |scene, values| {

@@ -3,6 +3,7 @@
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged, is_obstructed};
 use crate::num::linalg::LinalgError;
+use crate::num::named::named;
 use crate::num::statistics::sidak_threshold;
 use crate::recovery::{Nuisance, RecoveryError};
 use crate::scene::Scene;
@@ -21,24 +22,17 @@ use super::unmodelled::unmodelled;
 /// Replicates from which errors are known well enough for deviations of the scene to be fitted.
 pub(super) const FEWEST: u32 = 6;
 
-/// How the model integrates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Integration {
-    /// Elements, pixels and spots by their centres; how far that is from the integral is the bound
-    /// of each entry.
-    Centres,
-    /// Converged quadrature over elements, footprints and spots; the bound is what its last
-    /// refinement changed.
-    Quadrature,
-}
-
-impl Integration {
-    /// The name used on the command line and in the files of a run.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Centres => "centres",
-            Self::Quadrature => "quadrature",
-        }
+named! {
+    /// How the model integrates.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Integration {
+        /// Elements, pixels and spots by their centres; how far that is from the integral is the
+        /// bound of each entry.
+        Centres = "centres":
+            "Elements, pixels and spots by their centres, with a bound on what that leaves out",
+        /// Converged quadrature over elements, footprints and spots; the bound is what its last
+        /// refinement changed.
+        Quadrature = "quadrature": "Converged quadrature over elements, footprints and spots",
     }
 }
 

@@ -2,19 +2,22 @@
 
 use crate::geometry::DVec3;
 use crate::num::lanes::widest;
+use crate::num::named::named;
 use crate::scene::material::FallOff;
 use crate::scene::{Element, Surface};
 
-/// Which cosine is taken at S2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernel {
-    /// What light does: cosθ_wall · cosθ_S2 / R².
-    Physical,
-    /// What the published simulation computes: cosθ_wall · √(½·|r⊥|²)/R / R², where r⊥ is the part
-    /// of the line that is perpendicular to S2's u axis (on the bench (y1 − y2, z2)) and √½ the
-    /// cosine of the hinge angle. Only for reproducing published curves: on the bench it misses the
-    /// transport integral by a third.
-    Published,
+named! {
+    /// Which cosine is taken at S2.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Kernel {
+        /// What light does: cosθ_wall · cosθ_S2 / R².
+        Physical = "physical": "The true cosine at the hidden surface",
+        /// What the published simulation computes: cosθ_wall · √(½·|r⊥|²)/R / R², where r⊥ is the
+        /// part of the line that is perpendicular to S2's u axis (on the bench (y1 − y2, z2)) and
+        /// √½ the cosine of the hinge angle. Only for reproducing published curves: on the bench it
+        /// misses the transport integral by a third.
+        Published = "published": "The one in the published simulation",
+    }
 }
 
 /// A point of the hidden surface.
@@ -91,14 +94,6 @@ impl<'a> HiddenPoints<'a> {
 }
 
 impl Kernel {
-    /// The name used on the command line and in the files of a run.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Physical => "physical",
-            Self::Published => "published",
-        }
-    }
-
     /// G between a wall point with its normal and a hidden point, length⁻²; 0 where one sees only
     /// the other's back. Where the hidden surface shines, times its fall-off f in that direction.
     pub(super) fn between(self, wall: DVec3, normal: DVec3, hidden: &HiddenPoint) -> f64 {

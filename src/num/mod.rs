@@ -15,6 +15,8 @@ pub mod linalg;
 #[doc(hidden)]
 pub mod multiprecision;
 #[doc(hidden)]
+pub mod named;
+#[doc(hidden)]
 pub mod poisson;
 #[doc(hidden)]
 pub mod quadratic;

@@ -16,21 +16,18 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
+use super::named::{Named, named};
 use super::{poisson, warp};
 
-/// The points that a path is built from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Sampling {
-    /// Independent uniform numbers.
-    Pcg,
-    /// Owen-scrambled Sobol' nets, one per block.
-    Sobol,
-}
-
-impl std::fmt::Display for Sampling {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
+named! {
+    /// The points that a path is built from.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Sampling {
+        /// Independent uniform numbers.
+        Pcg = "pcg": "Independent random numbers",
+        /// Owen-scrambled Sobol' nets, one per block.
+        Sobol = "sobol": "Owen-scrambled Sobol' points",
     }
 }
 
@@ -38,21 +35,7 @@ impl std::str::FromStr for Sampling {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|s| s.name() == text);
-        found.ok_or_else(|| format!("no sampler `{text}` (use pcg or sobol)"))
-    }
-}
-
-impl Sampling {
-    /// Every sampling.
-    pub const ALL: [Self; 2] = [Self::Pcg, Self::Sobol];
-
-    /// The name used on the command line and in the files of a run.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pcg => "pcg",
-            Self::Sobol => "sobol",
-        }
+        Self::by_name(text).ok_or_else(|| format!("no sampler `{text}` (use pcg or sobol)"))
     }
 }
 

@@ -1,60 +1,45 @@
 //! The names of the recovery methods.
 
-use std::fmt;
 use std::str::FromStr;
 
-/// How reflectances are recovered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Method {
-    /// Moore–Penrose inverse of the laser side, mean over pixels.
-    Pinv,
-    /// (DᵀD)⁻¹Dᵀ of the laser side where its columns are independent, mean over pixels.
-    LeftInverse,
-    /// Dᵀ(DDᵀ)⁻¹ of the laser side where its rows are independent, mean over pixels.
-    RightInverse,
-    /// Φ/D by pivoted QR, basic solution, mean over pixels: what MATLAB's `/` does.
-    Rdivide,
-    /// Φ/D by pivoted QR, solution of least norm, mean over pixels: what Octave's `/` does.
-    RdivideMinNorm,
-    /// Truncated singular value decomposition of the laser side, mean over pixels.
-    Tsvd,
-    /// Tikhonov damping of the laser side, mean over pixels.
-    Tikhonov,
-    /// Tikhonov damping of the differences between neighbouring elements, mean over pixels.
-    TikhonovGradient,
-    /// Least squares over all pixels and spots, reflectances unbounded.
-    JointUnbounded,
-    /// The same with reflectances between 0 and 1, which every surface obeys.
-    Joint,
-    /// The same with reflectances of 0 or more, without an upper bound.
-    Nnls,
-    /// Reflectances as a Gaussian process: neighbours resemble one another, without bounds.
-    JointGp,
-    /// `joint` with a penalty on differences between neighbours.
-    JointTv,
-    /// The same with reflectances of two values only.
-    JointTwoValued,
+use crate::num::named::{Named, named};
+
+named! {
+    /// How reflectances are recovered, simplest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Method {
+        /// Moore–Penrose inverse of the laser side, mean over pixels.
+        Pinv = "pinv",
+        /// (DᵀD)⁻¹Dᵀ of the laser side where its columns are independent, mean over pixels.
+        LeftInverse = "left-inverse",
+        /// Dᵀ(DDᵀ)⁻¹ of the laser side where its rows are independent, mean over pixels.
+        RightInverse = "right-inverse",
+        /// Φ/D by pivoted QR, basic solution, mean over pixels: what MATLAB's `/` does.
+        Rdivide = "rdivide",
+        /// Φ/D by pivoted QR, solution of least norm, mean over pixels: what Octave's `/` does.
+        RdivideMinNorm = "rdivide-min-norm",
+        /// Truncated singular value decomposition of the laser side, mean over pixels.
+        Tsvd = "tsvd",
+        /// Tikhonov damping of the laser side, mean over pixels.
+        Tikhonov = "tikhonov",
+        /// Tikhonov damping of the differences between neighbouring elements, mean over pixels.
+        TikhonovGradient = "tikhonov-gradient",
+        /// Least squares over all pixels and spots, reflectances unbounded.
+        JointUnbounded = "joint-unbounded",
+        /// The same with reflectances between 0 and 1, which every surface obeys.
+        Joint = "joint",
+        /// The same with reflectances of 0 or more, without an upper bound.
+        Nnls = "nnls",
+        /// Reflectances as a Gaussian process: neighbours resemble one another, without bounds.
+        JointGp = "joint-gp",
+        /// `joint` with a penalty on differences between neighbours.
+        JointTv = "joint-tv",
+        /// The same with reflectances of two values only.
+        JointTwoValued = "joint-two-valued",
+    }
 }
 
 impl Method {
-    /// Every method, simplest first.
-    pub const ALL: [Method; 14] = [
-        Method::Pinv,
-        Method::LeftInverse,
-        Method::RightInverse,
-        Method::Rdivide,
-        Method::RdivideMinNorm,
-        Method::Tsvd,
-        Method::Tikhonov,
-        Method::TikhonovGradient,
-        Method::JointUnbounded,
-        Method::Joint,
-        Method::Nnls,
-        Method::JointGp,
-        Method::JointTv,
-        Method::JointTwoValued,
-    ];
-
     /// Methods that know how likely the photographs are by what they assume, and the most elements
     /// of which they end within a minute or so.
     pub const OF_FEW: [(Method, usize); 2] =
@@ -98,35 +83,9 @@ impl Method {
         )
     }
 
-    /// The name by which the method is asked for and by which its files are called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Method::Pinv => "pinv",
-            Method::LeftInverse => "left-inverse",
-            Method::RightInverse => "right-inverse",
-            Method::Rdivide => "rdivide",
-            Method::RdivideMinNorm => "rdivide-min-norm",
-            Method::Tsvd => "tsvd",
-            Method::Tikhonov => "tikhonov",
-            Method::TikhonovGradient => "tikhonov-gradient",
-            Method::JointUnbounded => "joint-unbounded",
-            Method::Joint => "joint",
-            Method::Nnls => "nnls",
-            Method::JointGp => "joint-gp",
-            Method::JointTv => "joint-tv",
-            Method::JointTwoValued => "joint-two-valued",
-        }
-    }
-
     /// Whether it compares neighbouring elements, and needs to know how they lie.
     pub fn compares_neighbours(self) -> bool {
         [Method::JointGp, Method::JointTv, Method::TikhonovGradient].contains(&self)
-    }
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
     }
 }
 
@@ -139,10 +98,7 @@ impl FromStr for Method {
     type Err = UnknownMethod;
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
-        Method::ALL
-            .into_iter()
-            .find(|m| m.name() == name)
-            .ok_or_else(|| UnknownMethod(name.to_string()))
+        Method::by_name(name).ok_or_else(|| UnknownMethod(name.to_string()))
     }
 }
 

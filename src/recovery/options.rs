@@ -1,71 +1,39 @@
 //! How it is to be inverted.
 
-use std::fmt;
-
 use crate::num::linalg::Tolerance;
+use crate::num::named::named;
 
-/// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Rule {
-    /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise
-    /// explains. Needs the standard errors of Φ.
-    #[default]
-    Discrepancy,
-    /// Generalised cross-validation: the regularisation that best predicts entries left out. Needs
-    /// no noise model; takes the errors as equal and independent.
-    Gcv,
-    /// The corner of the L-curve, log ‖solution‖ over log ‖residual‖. Needs no noise model.
-    LCurve,
-}
-
-impl Rule {
-    /// Every rule.
-    pub const ALL: [Rule; 3] = [Rule::Discrepancy, Rule::Gcv, Rule::LCurve];
-
-    /// The name by which it is asked for.
-    pub fn name(self) -> &'static str {
-        match self {
-            Rule::Discrepancy => "discrepancy",
-            Rule::Gcv => "gcv",
-            Rule::LCurve => "l-curve",
-        }
+named! {
+    /// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not
+    /// given.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Rule {
+        /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise
+        /// explains. Needs the standard errors of Φ.
+        #[default]
+        Discrepancy = "discrepancy":
+            "The strongest regularisation whose residual the noise explains",
+        /// Generalised cross-validation: the regularisation that best predicts entries left out.
+        /// Needs no noise model; takes the errors as equal and independent.
+        Gcv = "gcv": "Generalised cross-validation; needs no noise model",
+        /// The corner of the L-curve, log ‖solution‖ over log ‖residual‖. Needs no noise model.
+        LCurve = "l-curve": "The corner of the L-curve; needs no noise model",
     }
 }
 
-impl fmt::Display for Rule {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-/// By what the joint methods weigh the entries of Φ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum WeightRule {
-    /// By the noise: separable weights fitted to 1/σ², where standard errors are given.
-    #[default]
-    Noise,
-    /// By 1/σ² of each entry, wherever standard errors are given and their normal equations hold
-    /// what the noise leaves.
-    Entries,
-    /// All alike.
-    Unweighted,
-}
-
-impl WeightRule {
-    /// Every rule.
-    pub const ALL: [WeightRule; 3] = [
-        WeightRule::Noise,
-        WeightRule::Entries,
-        WeightRule::Unweighted,
-    ];
-
-    /// The name by which it is asked for.
-    pub fn name(self) -> &'static str {
-        match self {
-            WeightRule::Noise => "noise",
-            WeightRule::Entries => "entries",
-            WeightRule::Unweighted => "none",
-        }
+named! {
+    /// By what the joint methods weigh the entries of Φ.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum WeightRule {
+        /// By the noise: separable weights fitted to 1/σ², where standard errors are given.
+        #[default]
+        Noise = "noise": "By the noise, where it is known",
+        /// By 1/σ² of each entry, wherever standard errors are given and their normal equations
+        /// hold what the noise leaves.
+        Entries = "entries":
+            "By the noise of each entry, as joint-gp and more than 512 elements have it",
+        /// All alike.
+        Unweighted = "none": "All alike",
     }
 }
 

@@ -1,99 +1,54 @@
 //! The settings of a recovery: to which methods each means something, and which values it takes.
 
 use super::method::Method;
+use crate::num::named::named;
 
-/// A setting, by the name it has in the command line and, with underscores, in Python.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Setting {
-    /// Standard errors relative to each entry.
-    Noise,
-    /// Singular values that are kept.
-    Rank,
-    /// Damping of small singular values, a fraction of σ1.
-    Damping,
-    /// Where singular values count as 0, a fraction of σ1.
-    Tolerance,
-    /// Weight of differences between neighbours, a fraction of σ1².
-    Tv,
-    /// The two values of reflectances.
-    Levels,
-    /// Confidence of bands.
-    Bands,
-    /// How entries are weighted.
-    Weighting,
-    /// Errors of unknown noise as a field over the photograph.
-    ErrorField,
-    /// A constant in each photograph.
-    FrameConstant,
-    /// A polynomial of this degree in each photograph.
-    FramePolynomial,
-    /// Given patterns in each photograph.
-    FramePatterns,
-    /// A background that all photographs share.
-    Background,
-    /// Glare of this shape in each photograph.
-    GlarePattern,
-    /// A free scale of all light.
-    FreeScale,
-    /// Gains of the photographs, known to this standard deviation.
-    FrameGain,
-    /// The scale of all light, known to this standard deviation.
-    ScaleError,
-    /// Entries that do not count.
-    LeftOut,
-    /// Occluders that reflect, recovered like the hidden surfaces.
-    OccluderLight,
+named! {
+    /// A setting, by the name it has in the command line and, with underscores, in Python.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Setting {
+        /// Standard errors relative to each entry.
+        Noise = "noise",
+        /// Singular values that are kept.
+        Rank = "rank",
+        /// Damping of small singular values, a fraction of σ1.
+        Damping = "damping",
+        /// Where singular values count as 0, a fraction of σ1.
+        Tolerance = "tolerance",
+        /// Weight of differences between neighbours, a fraction of σ1².
+        Tv = "tv",
+        /// The two values of reflectances.
+        Levels = "levels",
+        /// Confidence of bands.
+        Bands = "bands",
+        /// How entries are weighted.
+        Weighting = "weighting",
+        /// Errors of unknown noise as a field over the photograph.
+        ErrorField = "error-field",
+        /// A constant in each photograph.
+        FrameConstant = "frame-constant",
+        /// A polynomial of this degree in each photograph.
+        FramePolynomial = "frame-polynomial",
+        /// Given patterns in each photograph.
+        FramePatterns = "frame-patterns",
+        /// A background that all photographs share.
+        Background = "background",
+        /// Glare of this shape in each photograph.
+        GlarePattern = "glare-pattern",
+        /// A free scale of all light.
+        FreeScale = "free-scale",
+        /// Gains of the photographs, known to this standard deviation.
+        FrameGain = "frame-gain",
+        /// The scale of all light, known to this standard deviation.
+        ScaleError = "scale-error",
+        /// Entries that do not count.
+        LeftOut = "left-out",
+        /// Occluders that reflect, recovered like the hidden surfaces.
+        OccluderLight = "occluder-light",
+    }
 }
 
 impl Setting {
-    /// Every setting.
-    pub const ALL: [Setting; 19] = [
-        Setting::Noise,
-        Setting::Rank,
-        Setting::Damping,
-        Setting::Tolerance,
-        Setting::Tv,
-        Setting::Levels,
-        Setting::Bands,
-        Setting::Weighting,
-        Setting::ErrorField,
-        Setting::FrameConstant,
-        Setting::FramePolynomial,
-        Setting::FramePatterns,
-        Setting::Background,
-        Setting::GlarePattern,
-        Setting::FreeScale,
-        Setting::FrameGain,
-        Setting::ScaleError,
-        Setting::LeftOut,
-        Setting::OccluderLight,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Setting::Noise => "noise",
-            Setting::Rank => "rank",
-            Setting::Damping => "damping",
-            Setting::Tolerance => "tolerance",
-            Setting::Tv => "tv",
-            Setting::Levels => "levels",
-            Setting::Bands => "bands",
-            Setting::Weighting => "weighting",
-            Setting::ErrorField => "error-field",
-            Setting::FrameConstant => "frame-constant",
-            Setting::FramePolynomial => "frame-polynomial",
-            Setting::FramePatterns => "frame-patterns",
-            Setting::Background => "background",
-            Setting::GlarePattern => "glare-pattern",
-            Setting::FreeScale => "free-scale",
-            Setting::FrameGain => "frame-gain",
-            Setting::ScaleError => "scale-error",
-            Setting::LeftOut => "left-out",
-            Setting::OccluderLight => "occluder-light",
-        }
-    }
-
     /// Whether the method does anything with it.
     pub fn means_something_to(self, method: Method) -> bool {
         match self {

@@ -7,33 +7,21 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Fault, keys};
 use super::quantity::Quantity;
+use crate::num::named::{Named, named};
 
-/// A sensor that is built in.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-pub enum SensorModel {
-    /// Without any noise or limit.
-    Ideal,
-    /// A cooled scientific CCD.
-    Ccd,
-    /// An ordinary digital single-lens reflex camera.
-    Dslr,
-    /// An industrial CMOS camera.
-    MachineVision,
-}
-
-impl SensorModel {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Ideal, Self::Ccd, Self::Dslr, Self::MachineVision];
-
-    /// Its name in scene files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ideal => "ideal",
-            Self::Ccd => "ccd",
-            Self::Dslr => "dslr",
-            Self::MachineVision => "machine-vision",
-        }
+named! {
+    /// A sensor that is built in.
+    #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum SensorModel {
+        /// Without any noise or limit.
+        Ideal = "ideal",
+        /// A cooled scientific CCD.
+        Ccd = "ccd",
+        /// An ordinary digital single-lens reflex camera.
+        Dslr = "dslr",
+        /// An industrial CMOS camera.
+        MachineVision = "machine-vision",
     }
 }
 
@@ -41,8 +29,7 @@ impl FromStr for SensorModel {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|m| m.name() == name);
-        found.ok_or_else(|| {
+        Self::by_name(name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
             format!("there is no built-in sensor `{name}`\n  cure: use one of {names}")
         })

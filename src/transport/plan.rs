@@ -8,44 +8,29 @@ use serde::{Deserialize, Serialize};
 use super::tails::flag_neighbours;
 use crate::matrix::Matrix;
 use crate::num::control::Stopped;
+use crate::num::named::{Named, named};
 use crate::num::stream::{LARGEST_NET, Sampling};
 
-/// What paths have in common. All are unbiased.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Estimator {
-    /// Every (pixel, spot) entry has its own paths: errors are independent.
-    Independent,
-    /// The paths of a pixel serve all spots, one connection per spot and vertex: errors along a row
-    /// of Φcam are correlated.
-    Shared,
-    /// The points between first and last wall serve all pixels and all spots: Φ̂ is a matrix
-    /// product, and the errors of all entries are correlated.
-    Factored,
+named! {
+    /// What paths have in common. All are unbiased.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Estimator {
+        /// Every (pixel, spot) entry has its own paths: errors are independent.
+        Independent = "independent": "Every (pixel, spot) entry has its own paths",
+        /// The paths of a pixel serve all spots, one connection per spot and vertex: errors along a
+        /// row of Φcam are correlated.
+        Shared = "shared": "The paths of a pixel serve all spots",
+        /// The points between first and last wall serve all pixels and all spots: Φ̂ is a matrix
+        /// product, and the errors of all entries are correlated.
+        Factored = "factored": "The points between the walls serve all pixels and all spots",
+    }
 }
 
 impl Estimator {
-    /// Every estimator.
-    pub const ALL: [Self; 3] = [Self::Independent, Self::Shared, Self::Factored];
-
     /// Whether one path, or point, serves every spot.
     pub fn serves_all_spots(self) -> bool {
         self != Self::Independent
-    }
-
-    /// The name used on the command line and in the files of a run.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::Shared => "shared",
-            Self::Factored => "factored",
-        }
-    }
-}
-
-impl std::fmt::Display for Estimator {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
     }
 }
 
@@ -53,7 +38,7 @@ impl FromStr for Estimator {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|e| e.name() == text);
+        let found = Self::by_name(text);
         found.ok_or_else(|| format!("no estimator `{text}` (use independent, shared or factored)"))
     }
 }

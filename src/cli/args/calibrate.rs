@@ -48,7 +48,7 @@ pub(in crate::cli) struct CalibrateArgs {
     #[command(flatten)]
     pub occlusion: OcclusionArgs,
     /// How the model integrates
-    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
+    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "quadrature")]
     pub integration: Integration,
     /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8
     #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]

@@ -250,7 +250,7 @@ pub(in crate::cli) struct ModelArgs {
     #[arg(long, short)]
     pub output: PathBuf,
     /// Kernel of G12 and G23
-    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
+    #[arg(long, value_parser = choice::named::<Kernel>(), default_value = "physical")]
     pub kernel: Kernel,
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
@@ -258,7 +258,7 @@ pub(in crate::cli) struct ModelArgs {
     #[command(flatten)]
     pub occlusion: OcclusionArgs,
     /// Where Φcam is evaluated; G12 and G23 are always those of the centres
-    #[arg(long, value_parser = choice::integration(), default_value = "centres")]
+    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "centres")]
     pub integration: Integration,
     /// Print the shapes of the matrices as JSON
     #[arg(long)]

@@ -64,7 +64,7 @@ pub(in crate::cli) struct RecoverArgs {
     #[arg(long, value_name = "NxM", value_parser = elements, requires = "camera_side")]
     pub pixels: Option<[usize; 2]>,
     /// Kernel of the model that is inverted
-    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
+    #[arg(long, value_parser = choice::named::<Kernel>(), default_value = "physical")]
     pub kernel: Kernel,
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
@@ -73,10 +73,10 @@ pub(in crate::cli) struct RecoverArgs {
     pub occlusion: OcclusionArgs,
     /// How the model of the joint methods integrates; the published kernel, more than 1024 elements
     /// and the other methods are by centres
-    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
+    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "quadrature")]
     pub integration: Integration,
     /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
-    #[arg(long, value_parser = choice::rule(), default_value = "discrepancy")]
+    #[arg(long, value_parser = choice::named::<Rule>(), default_value = "discrepancy")]
     pub rule: Rule,
     /// Singular directions that tsvd keeps, in place of the rule's choice
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
@@ -109,7 +109,7 @@ pub(in crate::cli) struct RecoverArgs {
 #[derive(Clone, Debug, Arguments)]
 pub(in crate::cli) struct JointArgs {
     /// By what the joint methods weigh the entries of Φcam
-    #[arg(long, value_parser = choice::weighting(), default_value = "noise")]
+    #[arg(long, value_parser = choice::named::<WeightRule>(), default_value = "noise")]
     pub weighting: WeightRule,
     /// Weight of joint-tv's total variation relative to σ1², in place of the one of the largest
     /// evidence

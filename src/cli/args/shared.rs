@@ -15,10 +15,10 @@ pub(in crate::cli) struct PathArgs {
     /// Which paths are shared. Given neither this nor --samples: factored or shared where other
     /// surfaces than the hidden reflect between the walls, with as many samples as a pilot says
     /// make the overall standard error 1 %; else independent
-    #[arg(long, value_parser = choice::estimator())]
+    #[arg(long, value_parser = choice::named::<Estimator>())]
     pub estimator: Option<Estimator>,
     /// Where random numbers come from
-    #[arg(long, value_parser = choice::sampler(), default_value = "sobol")]
+    #[arg(long, value_parser = choice::named::<Sampling>(), default_value = "sobol")]
     pub sampler: Sampling,
     /// Paths per pixel and spot (independent) or per pixel (shared), points between the walls
     /// (factored); rounded up to whole blocks. 512 unless given or chosen as above
@@ -70,10 +70,10 @@ impl OcclusionArgs {
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct TestArgs {
     /// Kernel of the model
-    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
+    #[arg(long, value_parser = choice::named::<Kernel>(), default_value = "physical")]
     pub kernel: Kernel,
     /// How the model integrates
-    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
+    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "quadrature")]
     pub integration: Integration,
     /// Probability of rejecting a right model
     #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]

@@ -33,7 +33,7 @@ pub(in crate::cli) struct ValidateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
     pub replicates: Option<u32>,
     /// Which entries of --phi share their errors
-    #[arg(long, value_parser = choice::errors(), default_value = "independent", requires = "phi")]
+    #[arg(long, value_parser = choice::named::<Errors>(), default_value = "independent", requires = "phi")]
     pub errors: Errors,
     #[command(flatten)]
     pub beside: BesideArgs,

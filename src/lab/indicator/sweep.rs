@@ -2,48 +2,29 @@
 
 use crate::lab::foot_on_wall::foot_on_wall;
 use crate::model::Kernel;
+use crate::num::named::named;
 use crate::scene::{Scene, SceneError, spots};
 
-/// How the spots lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layout {
-    /// The sides of a square.
-    Square,
-    /// The same with the published stagger of −1, +1 and 0 in.
-    Staggered,
-    /// A circle.
-    Ring,
-    /// A square grid.
-    Grid,
-    /// Two lines: the bottom and the top side of the square.
-    Lines,
-    /// Uniformly random in the square.
-    Random,
+named! {
+    /// How the spots lie.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Layout {
+        /// The sides of a square.
+        Square = "square",
+        /// The same with the published stagger of −1, +1 and 0 in.
+        Staggered = "square, staggered",
+        /// A circle.
+        Ring = "ring",
+        /// A square grid.
+        Grid = "grid",
+        /// Two lines: the bottom and the top side of the square.
+        Lines = "lines",
+        /// Uniformly random in the square.
+        Random = "random",
+    }
 }
 
 impl Layout {
-    /// Every layout.
-    pub const ALL: [Self; 6] = [
-        Self::Square,
-        Self::Staggered,
-        Self::Ring,
-        Self::Grid,
-        Self::Lines,
-        Self::Random,
-    ];
-
-    /// Its name in the files of a study.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Square => "square",
-            Self::Staggered => "square, staggered",
-            Self::Ring => "ring",
-            Self::Grid => "grid",
-            Self::Lines => "lines",
-            Self::Random => "random",
-        }
-    }
-
     /// About `number` places around `centre` (as many as the layout can), at half-width or radius
     /// `half`, `inch` the length of an inch.
     fn places(self, centre: [f64; 2], half: f64, number: usize, inch: f64) -> Vec<[f64; 2]> {

@@ -29,9 +29,10 @@ mod tasks;
 mod tests;
 mod unsure;
 
-use super::noise_law::NOISE_LAWS;
+use super::noise_law::NoiseLaw;
 use super::options::{Opt, OptionError};
 use super::registered::{Registered, prepared};
+use crate::num::named::Named;
 use plan::Plan;
 use prior::{PRIORS, Prior};
 use tasks::LayoutTasks;
@@ -78,7 +79,12 @@ pub(super) const STUDY: Registered = Registered {
         )
         .within(2, 400)
         .or("40"),
-        Opt::choice("noise", "How the noise goes with the light", NOISE_LAWS).or("relative"),
+        Opt::choice(
+            "noise",
+            "How the noise goes with the light",
+            NoiseLaw::NAMES,
+        )
+        .or("relative"),
         Opt::number(
             "level",
             "Noise for which the spots are placed, relative to the light",

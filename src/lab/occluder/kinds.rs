@@ -3,66 +3,36 @@
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Disc, Parallelogram, Shape};
+use crate::num::named::named;
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::scene::mesh::opaque_runs;
 use crate::scene::{Scene, SceneError};
 
-/// What stands between object and wall, black on both sides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Kind {
-    /// Nothing.
-    None,
-    /// A square plate, its side the size.
-    Plate,
-    /// A disc, its diameter the size.
-    Disc,
-    /// A strip along the view's v, a quarter of the size wide and four sizes long.
-    Rod,
-    /// A plate of eight sizes with a square hole of a quarter of the size.
-    Pinhole,
-    /// The same with a slit of that width along the view's v.
-    Slit,
-    /// A mask of 2.4 sizes a side, half of its cells open, chosen at random.
-    Random,
-    /// A mask of 2·7 − 1 a side of cells of 0.2 sizes, the 7 × 7 modified uniformly redundant array
-    /// repeated (Gottesman and Fenimore 1989): wherever it is looked through, all of the 7 × 7 are
-    /// met.
-    Mura,
+named! {
+    /// What stands between object and wall, black on both sides.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub(super) enum Kind {
+        /// Nothing.
+        None = "none": "Nothing",
+        /// A square plate, its side the size.
+        Plate = "plate": "A square plate",
+        /// A disc, its diameter the size.
+        Disc = "disc": "A disc",
+        /// A strip along the view's v, a quarter of the size wide and four sizes long.
+        Rod = "rod": "A strip, a quarter of the size wide",
+        /// A plate of eight sizes with a square hole of a quarter of the size.
+        Pinhole = "pinhole": "A plate with a square hole of a quarter of the size",
+        /// The same with a slit of that width along the view's v.
+        Slit = "slit": "A plate with a slit of that width",
+        /// A mask of 2.4 sizes a side, half of its cells open, chosen at random.
+        Random = "random": "A mask of 2.4 sizes a side, half of its cells open",
+        /// A mask of 2·7 − 1 a side of cells of 0.2 sizes, the 7 × 7 modified uniformly redundant
+        /// array repeated (Gottesman and Fenimore 1989): wherever it is looked through, all of the
+        /// 7 × 7 are met.
+        Mura = "mura": "A mask of 13 × 13 cells of 0.2 sizes, the 7 × 7 MURA repeated",
+    }
 }
-
-/// Names on the command line, with what they mean.
-pub(super) const KINDS: &[(&str, &str)] = &[
-    ("none", "Nothing"),
-    ("plate", "A square plate"),
-    ("disc", "A disc"),
-    ("rod", "A strip, a quarter of the size wide"),
-    (
-        "pinhole",
-        "A plate with a square hole of a quarter of the size",
-    ),
-    ("slit", "A plate with a slit of that width"),
-    (
-        "random",
-        "A mask of 2.4 sizes a side, half of its cells open",
-    ),
-    (
-        "mura",
-        "A mask of 13 × 13 cells of 0.2 sizes, the 7 × 7 MURA repeated",
-    ),
-];
-
-/// In the order of [`KINDS`].
-const ALL: [Kind; 8] = [
-    Kind::None,
-    Kind::Plate,
-    Kind::Disc,
-    Kind::Rod,
-    Kind::Pinhole,
-    Kind::Slit,
-    Kind::Random,
-    Kind::Mura,
-];
 
 /// Where an occluder stands: in a plane parallel to the view, around the line from the middle of
 /// the view to the middle of the hidden surface.
@@ -77,18 +47,6 @@ pub(super) struct Place {
 }
 
 impl Kind {
-    /// By its name on the command line.
-    pub(super) fn by_name(name: &str) -> Option<Self> {
-        let at = KINDS.iter().position(|(known, _)| *known == name)?;
-        Some(ALL[at])
-    }
-
-    /// Its name.
-    pub(super) fn name(self) -> &'static str {
-        let at = ALL.iter().position(|kind| *kind == self).unwrap_or(0);
-        KINDS[at].0
-    }
-
     /// The scene with it at `place`; `mask` is the random one.
     ///
     /// # Errors

@@ -19,10 +19,11 @@ mod tasks;
 use super::options::Opt;
 use super::options::OptionError;
 use super::registered::{Registered, prepared};
-use crate::lab::noise_law::NOISE_LAWS;
+use crate::lab::noise_law::NoiseLaw;
 use crate::lab::subject::{PICTURES, Subject};
+use crate::num::named::Named;
 use crate::scene::SensorModel;
-use kinds::{KINDS, Kind, Place};
+use kinds::{Kind, Place};
 use photographed::Camera;
 use tasks::{OccluderTasks, Plan};
 
@@ -33,13 +34,13 @@ pub(super) const STUDY: Registered = Registered {
     scene: Some("thesis"),
     files: "occluder.csv, traced.csv, misplaced.csv, occluder.svg",
     options: &[
-        Opt::choice("kinds", "Occluders, separated by commas", KINDS)
+        Opt::choice("kinds", "Occluders, separated by commas", Kind::NAMES)
             .list()
             .or("none,plate,disc,rod,pinhole,slit,random,mura"),
         Opt::whole("spots", "Numbers of spots, separated by commas, evenly among those of the scene; all unless given")
             .list()
             .within(1, 1_000_000),
-        Opt::choice("noise", "How the noise goes with the light", NOISE_LAWS).or("relative"),
+        Opt::choice("noise", "How the noise goes with the light", NoiseLaw::NAMES).or("relative"),
         Opt::number("level", "Noise for which the place is searched, relative to the light")
             .or("0.01")
             .rule(

@@ -5,12 +5,14 @@ use super::verdicts::{Models, Verdicts, row, verdicts};
 use crate::lab::certainty::Certainty;
 use crate::lab::error::LabError;
 use crate::lab::evidence::Test;
-use crate::lab::options::{ESTIMATORS, Opt, SAMPLERS};
+use crate::lab::options::Opt;
 use crate::lab::problem::lit;
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study, Work};
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, converged};
+use crate::num::named::Named;
+use crate::num::stream::Sampling;
 use crate::scene::Scene;
 use crate::transport::{
     Budget, Control, Estimator, Plan, RenderError, SamplesError, render, unsupported_surface,
@@ -26,10 +28,10 @@ pub(in crate::lab) const STUDY: Registered = Registered {
         Opt::choice(
             "estimator",
             "Estimators, separated by commas; all unless given",
-            ESTIMATORS,
+            Estimator::NAMES,
         )
         .list(),
-        Opt::choice("sampler", "Where random numbers come from", SAMPLERS).or("sobol"),
+        Opt::choice("sampler", "Where random numbers come from", Sampling::NAMES).or("sobol"),
         Opt::paths("samples", "Numbers of paths, separated by commas")
             .or("64,256")
             .list(),

@@ -19,6 +19,7 @@ mod card;
 mod figure;
 mod letters;
 
+use crate::num::named::named;
 pub use figure::Figure;
 
 /// More pixels along a side than this are taken for a mistake.
@@ -39,51 +40,26 @@ pub struct Picture {
     pub values: Vec<f64>,
 }
 
-/// A picture that is built in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// A playing card.
-    Card,
-    /// A chart of letters.
-    Letters,
-    /// A Siemens star.
-    Siemens,
-    /// A slanted edge.
-    Edge,
-    /// Groups of three bars.
-    Usaf,
-    /// A grey ramp.
-    Ramp,
+named! {
+    /// A picture that is built in.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Target {
+        /// A playing card.
+        Card = "card",
+        /// A chart of letters.
+        Letters = "letters",
+        /// A Siemens star.
+        Siemens = "siemens",
+        /// A slanted edge.
+        Edge = "edge",
+        /// Groups of three bars.
+        Usaf = "usaf",
+        /// A grey ramp.
+        Ramp = "ramp",
+    }
 }
 
 impl Target {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Card,
-        Self::Letters,
-        Self::Siemens,
-        Self::Edge,
-        Self::Usaf,
-        Self::Ramp,
-    ];
-
-    /// The target called so.
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|t| t.name() == name)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Card => "card",
-            Self::Letters => "letters",
-            Self::Siemens => "siemens",
-            Self::Edge => "edge",
-            Self::Usaf => "usaf",
-            Self::Ramp => "ramp",
-        }
-    }
-
     /// What it shows, in one line.
     pub fn summary(self) -> &'static str {
         match self {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::num::named::Named;
 use std::f64::consts::PI;
 
 fn mean(values: &[f64]) -> f64 {

@@ -3,6 +3,7 @@
 use super::file::{Filter, PictureChannel, VariedTable};
 use super::{Bilinear, Cells, Files, MOST_CELLS, Texture, Wrap, albedo};
 use crate::image::{self, Channel, Encoding, Image, MOST_PIXELS, Transfer};
+use crate::num::named::Named;
 use crate::scene::error::{Fault, keys};
 use crate::scene::room::refuse_larger;
 use crate::scene::target::Target;
