@@ -5,9 +5,9 @@ use super::console::Console;
 use super::failure::Failure;
 use super::interrupt;
 use super::process::pool;
-use crate::lab::{self, Certainty, Errors, PilotError, Test};
+use crate::lab::{self, Certainty, Errors, LabError, Test};
 use crate::scene::Scene;
-use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface};
+use crate::transport::{Budget, Estimator, Plan, unsupported_surface};
 
 /// Refuses a given value that is not `allowed`; `range` says in words what is.
 pub(super) fn within(
@@ -49,7 +49,7 @@ pub(super) fn plan(
 fn aimed(args: &PathArgs, scene: &Scene, console: Console) -> Result<Plan, Failure> {
     let found = lab::aimed(scene, args.sampler, args.seed, interrupt::control());
     let (plan, foretold) = found.map_err(|error| match error {
-        PilotError::Render(RenderError::Stopped(stopped)) => stopped.into(),
+        LabError::Stopped(stopped) => stopped.into(),
         error => Failure::new(error.to_string(), "give --estimator and --samples"),
     })?;
     if let Some(error) = foretold {

@@ -3,9 +3,9 @@
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::control;
-use crate::lab::{Foretold, PilotError, darkness, foretold};
+use crate::lab::{Foretold, LabError, darkness, foretold};
 use crate::scene::Scene;
-use crate::transport::{Estimator, Plan, RenderError, Sampling};
+use crate::transport::{Estimator, Plan, Sampling};
 
 /// Says what the first samples of a render foretell.
 pub(super) fn warn(scene: &Scene, plan: &Plan, console: Console) -> Result<(), Failure> {
@@ -22,9 +22,9 @@ pub(super) fn dark(scene: &Scene) -> Result<Option<Foretold>, Failure> {
 }
 
 /// What cannot be traced is for the render itself to refuse.
-fn known(found: Result<Option<Foretold>, PilotError>) -> Result<Option<Foretold>, Failure> {
+fn known(found: Result<Option<Foretold>, LabError>) -> Result<Option<Foretold>, Failure> {
     match found {
-        Err(PilotError::Render(RenderError::Stopped(stopped))) => Err(stopped.into()),
+        Err(LabError::Stopped(stopped)) => Err(stopped.into()),
         found => Ok(found.unwrap_or(None)),
     }
 }

@@ -1,6 +1,7 @@
 //! Estimator and samples of a render that is told neither: what brings ‖σ‖/‖Φ‖ to 1 %.
 
-use super::pilot::{PilotError, look, thinned};
+use super::error::LabError;
+use super::pilot::{look, thinned};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene, Surface};
 use crate::transport::{Control, Estimator, Plan, unsupported_surface};
@@ -36,13 +37,13 @@ const MOST_ENTRIES: usize = 1 << 21;
 /// they find.
 ///
 /// # Errors
-/// [`PilotError`].
+/// [`LabError`] for a plan that cannot be traced, or a stop.
 pub fn aimed(
     scene: &Scene,
     sampling: Sampling,
     seed: u64,
     control: Control<'_>,
-) -> Result<(Plan, Option<f64>), PilotError> {
+) -> Result<(Plan, Option<f64>), LabError> {
     let usual = Plan::new(Estimator::Independent, sampling, seed, SAMPLES)?;
     let others = |s: &Surface| s.role == Role::Occluder && !s.is_black();
     if scene.max_bounces < 3 || scene.shining().is_some() || !scene.surfaces.iter().any(others) {
@@ -77,7 +78,7 @@ fn reaching(
     least: &Plan,
     most: u64,
     control: Control<'_>,
-) -> Result<Option<(Plan, f64)>, PilotError> {
+) -> Result<Option<(Plan, f64)>, LabError> {
     let of = |samples, seed| Plan::new(least.estimator, least.sampling, seed, samples);
     let mut asked = match least.estimator {
         Estimator::Factored => SAMPLES,

@@ -42,7 +42,6 @@ use crate::transport::Control;
 use found::Picture;
 use frames::{Side, TermsOf};
 use mistaken::{Rearranged, likeliest};
-use order::Fault;
 use picture::Pictured;
 use place::{Lengths, Place, frames_of, parabola};
 
@@ -271,11 +270,7 @@ impl LocatedPlan {
         let root = covariance_root(&model.places, lengths.fixed)?;
         let sides = Side::all(photographs, terms.camera)?;
         let tried = [self.orders, self.seed];
-        let order = order::order(&sides, terms, &root, tried, control);
-        let order = order.map_err(|fault| match fault {
-            Fault::Linalg(e) => LabError::from(e),
-            Fault::Stopped(e) => e.into(),
-        })?;
+        let order = order::order(&sides, terms, &root, tried, control)?;
         let frame = [scene.camera.columns, scene.camera.rows];
         let all = Rearranged::all(frame, sides.len());
         let Some(other) = likeliest((photographs, &sides), terms, &root, all)? else {

@@ -255,7 +255,7 @@ pub use noise::{
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
 };
-pub use pilot::{Foretold, PilotError, darkness, foretold};
+pub use pilot::{Foretold, darkness, foretold};
 pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,

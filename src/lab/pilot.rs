@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::error::LabError;
 use crate::scene::Scene;
-use crate::transport::{Control, Plan, RenderError, SamplesError, Tally, trace};
+use crate::transport::{Control, Plan, Tally, trace};
 
 /// Samples of the first look, and of the second, which is asked before a bad word is said.
 const FIRST: u64 = 64;
@@ -46,29 +47,18 @@ impl std::fmt::Display for Foretold {
     }
 }
 
-/// Why there is no foretelling.
-#[derive(Debug, thiserror::Error)]
-pub enum PilotError {
-    /// There is no such plan.
-    #[error(transparent)]
-    Samples(#[from] SamplesError),
-    /// It cannot be traced, or was stopped.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-}
-
 /// Traces at most 8 × 8 pixels that cover the view and 8 of the spots with 64 samples; where these
 /// foretell more than 10 % of error, by ‖σ‖/‖Φ‖ ∝ 1/√N, with 1024 of them, for nets fall faster
 /// than that. Nothing is traced where the render itself takes less than 32 times as many paths. The
 /// bits of the render do not depend on it.
 ///
 /// # Errors
-/// [`PilotError`].
+/// [`LabError`] for a plan that cannot be traced, or a stop.
 pub fn foretold(
     scene: &Scene,
     plan: &Plan,
     control: Control<'_>,
-) -> Result<Option<Foretold>, PilotError> {
+) -> Result<Option<Foretold>, LabError> {
     let samples = plan.budget.samples();
     let thinned = thinned(scene, SIDE, SPOTS);
     let paths = |scene: &Scene| {
@@ -114,19 +104,19 @@ pub fn foretold(
 /// Whether no light reaches the camera, or 64 samples of each pixel and spot looked at met none.
 ///
 /// # Errors
-/// [`PilotError`].
+/// [`LabError`] for a plan that cannot be traced, or a stop.
 pub fn darkness(
     scene: &Scene,
     plan: &Plan,
     control: Control<'_>,
-) -> Result<Option<Foretold>, PilotError> {
+) -> Result<Option<Foretold>, LabError> {
     let endless = Plan::new(plan.estimator, plan.sampling, plan.seed, 1 << 32)?;
     let found = foretold(scene, &endless, control)?;
     Ok(found.filter(|found| !matches!(found, Foretold::Coarse(_))))
 }
 
 /// The tally of a render that tells nobody of its progress.
-pub(super) fn look(scene: &Scene, plan: &Plan, control: Control<'_>) -> Result<Tally, PilotError> {
+pub(super) fn look(scene: &Scene, plan: &Plan, control: Control<'_>) -> Result<Tally, LabError> {
     let spots = 0..scene.laser.spots.len();
     let tally = Tally::new(scene, plan, spots.len(), 0);
     let silent = Control {

@@ -5,10 +5,10 @@ use serde::Serialize;
 
 use super::frames::{Side, TermsOf};
 use super::likelihood::Fit;
+use crate::lab::LabError;
 use crate::matrix::Matrix;
-use crate::num::linalg::LinalgError;
 use crate::num::stream::{Key, Sampling, Stream};
-use crate::transport::{Control, Stopped};
+use crate::transport::Control;
 
 /// A permutation test of the spots' order, at the stated place of the hidden surfaces and one
 /// length of the prior, so that nothing was chosen by the stated order.
@@ -26,12 +26,6 @@ pub struct Order {
     pub least_misfit: f64,
 }
 
-/// Why there is no answer.
-pub(super) enum Fault {
-    Linalg(LinalgError),
-    Stopped(Stopped),
-}
-
 /// The test with `tried` orders of `seed`; none where there is no light.
 pub(super) fn order(
     sides: &[Side],
@@ -39,10 +33,10 @@ pub(super) fn order(
     root: &Matrix,
     [tried, seed]: [u64; 2],
     control: Control<'_>,
-) -> Result<Option<Order>, Fault> {
+) -> Result<Option<Order>, LabError> {
     let fit = |spots: &[usize]| {
         let lit = sides.iter().zip(spots.iter().copied());
-        Fit::of_sides(lit, terms, root).map_err(Fault::Linalg)
+        Fit::of_sides(lit, terms, root).map_err(LabError::from)
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
     let Some(own) = fit(&stated)? else {
@@ -51,7 +45,7 @@ pub(super) fn order(
     let found: Vec<Option<Fit>> = (0..tried)
         .into_par_iter()
         .map(|k| {
-            control.check().map_err(Fault::Stopped)?;
+            control.check()?;
             let found = fit(&shuffled(&stated, seed, k));
             (control.progress)(1);
             found
