@@ -24,7 +24,8 @@ pub(super) fn facts(rows: impl IntoIterator<Item = (&'static str, String)>) -> T
     }
 }
 
-fn percent(x: f64) -> String {
+/// A part of the whole, in words.
+pub(super) fn percent(x: f64) -> String {
     format!("{}\u{a0}%", figure(100.0 * x, 3))
 }
 

@@ -7,13 +7,9 @@ use super::certainty::fits_better;
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
 use super::gains::words;
 use super::score::{Deviation, Score};
-use super::summary::facts;
+use super::summary::{facts, percent};
 use super::validation::FEWEST;
 use crate::num::digits::{figure, significant};
-
-fn percent(x: f64) -> String {
-    format!("{}\u{a0}%", figure(100.0 * x, 3))
-}
 
 /// Part of the noise up to which bounds of the model change no χ² to speak of.
 const SMALL: f64 = 0.1;
