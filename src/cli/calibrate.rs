@@ -1,15 +1,14 @@
 //! `phicam calibrate`: the geometry, from the photographs.
 
-use std::path::{Path, PathBuf};
-
 use super::args::CalibrateArgs;
 use super::beside::frame_gain;
 use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
 use super::load_run::{read_bare_scene, read_run};
-use super::process::{pool, version};
+use super::process::pool;
 use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
+use super::spelled::Spelled;
 use super::unexplained::{Photographs, elements};
 use super::{Outcome, progress};
 use crate::folder::{Record, write_copies};
@@ -65,63 +64,39 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         }
     };
     let found = Found {
-        json: serde_json::to_string_pretty(&calibration).map_err(|e| Failure::of(e.into()))?,
+        json: serde_json::to_string_pretty(&calibration)?,
         finding: calibration.describe(),
         agrees: calibration.is_found(),
     };
     let asked = invocation(args, &plan.free, &scene);
-    deliver("calibration", &found, &output, &asked, args.json)?;
+    let outcome = deliver("calibration", &found, &output, &asked, args.json)?;
     write_copies(&output, &scene)?;
     console.say(format!(
-        "{}: written; scene.toml there is the calibrated scene: `{}`",
+        "{0}: written; scene.toml there is the calibrated scene: `phicam recover {0}{1}`",
         output.display(),
-        recovering(args, plan.frame_gain, &output)
+        recovering(args, plan.frame_gain)
     ));
-    Ok(if found.agrees {
-        Outcome::Done
-    } else {
-        Outcome::Disagreed
-    })
+    Ok(outcome)
 }
 
-/// The command that recovers by the calibrated scene from the same photographs.
-fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>, calibrated: &Path) -> String {
+/// With what the same photographs are recovered by the calibrated scene.
+fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>) -> Spelled {
     let own = |name: &str| Some(args.dir.join(name)).filter(|file| file.exists());
     let (phi, stderr) = match &args.phi {
         Some(phi) => (phi.clone(), args.stderr.clone()),
         None => (args.dir.join(PHI), own(STDERR)),
     };
-    let mut command = format!(
-        "phicam recover {} --phi {}",
-        calibrated.display(),
-        phi.display()
-    );
-    for (option, file) in [("--stderr", stderr), ("--left-out", args.left_out.clone())] {
-        if let Some(file) = file {
-            command += &format!(" {option} {}", file.display());
-        }
-    }
-    if let Some(replicates) = args.replicates {
-        command += &format!(" --replicates {replicates}");
-    }
-    if let Some(degree) = args.frame_polynomial {
-        command += &format!(" --frame-polynomial {degree}");
-    }
-    for (option, is_set) in [
-        ("--background", args.background),
-        ("--free-scale", args.free_scale),
-    ] {
-        if is_set {
-            command += &format!(" {option}");
-        }
-    }
-    if args.error_field {
-        command += " --method joint-gp --error-field";
-    }
-    if let Some(gain) = frame_gain {
-        command += &format!(" --frame-gain {gain}");
-    }
-    command
+    Spelled::default()
+        .file("--phi", Some(&phi))
+        .file("--stderr", stderr.as_deref())
+        .file("--left-out", args.left_out.as_deref())
+        .maybe("--replicates", args.replicates)
+        .maybe("--frame-polynomial", args.frame_polynomial)
+        .flag("--background", args.background)
+        .flag("--free-scale", args.free_scale)
+        .maybe("--method", args.error_field.then_some("joint-gp"))
+        .flag("--error-field", args.error_field)
+        .maybe("--frame-gain", frame_gain)
 }
 
 /// What is to be done, with what is not given.
@@ -166,48 +141,27 @@ fn free(given: &[Free], scene: &Scene) -> Vec<Free> {
 
 /// How to ask for it again.
 fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation {
-    let dir = args.dir.file_name().unwrap_or(args.dir.as_os_str());
     let of = |f: &Free| match f.sigma {
         Some(sigma) => format!("{}={sigma}", f.name),
         None => f.name.clone(),
     };
     let free: Vec<String> = free.iter().map(of).collect();
-    let mut options = vec![
-        ("--free".to_owned(), free.join(",")),
-        ("--starts".to_owned(), args.starts.to_string()),
-        ("--spread".to_owned(), args.spread.to_string()),
-        ("--seed".to_owned(), args.seed.to_string()),
-        (
-            "--integration".to_owned(),
-            args.integration.name().to_owned(),
-        ),
-    ];
-    let mut given = |name: &str, value: Option<String>| {
-        options.extend(value.map(|value| (name.to_owned(), value)));
-    };
-    let path = |p: &Option<PathBuf>| p.as_ref().map(|p| p.to_string_lossy().into_owned());
-    given("--phi", path(&args.phi));
-    given("--stderr", path(&args.stderr));
-    given("--replicates", args.replicates.map(|n| n.to_string()));
-    given("--frame-gain", args.frame_gain.map(|x| x.to_string()));
-    given("--free-scale", args.free_scale.then(String::new));
-    given("--error-field", args.error_field.then(String::new));
-    given("--background", args.background.then(String::new));
-    given(
-        "--elements",
-        args.elements.map(|n| n.map(|x| x.to_string()).join("x")),
-    );
-    given(
-        "--frame-polynomial",
-        args.frame_polynomial.map(|n| n.to_string()),
-    );
-    given("--left-out", path(&args.left_out));
-    options.extend(args.occlusion.again());
-    Invocation {
-        command: vec!["calibrate".to_owned(), dir.to_string_lossy().into_owned()],
-        scene: scene.clone(),
-        file: "scene.toml".to_owned(),
-        options,
-        version: version().to_owned(),
-    }
+    Spelled::default()
+        .with("--free", free.join(","))
+        .with("--starts", args.starts)
+        .with("--spread", args.spread)
+        .with("--seed", args.seed)
+        .with("--integration", args.integration)
+        .file("--phi", args.phi.as_deref())
+        .file("--stderr", args.stderr.as_deref())
+        .maybe("--replicates", args.replicates)
+        .maybe("--frame-gain", args.frame_gain)
+        .flag("--free-scale", args.free_scale)
+        .flag("--error-field", args.error_field)
+        .flag("--background", args.background)
+        .pair("--elements", args.elements, "x")
+        .maybe("--frame-polynomial", args.frame_polynomial)
+        .file("--left-out", args.left_out.as_deref())
+        .flag("--no-occlusion", args.occlusion.no_occlusion)
+        .of_folder("calibrate", &args.dir, scene)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::failure::Failure;
+use super::failure::{Failure, Outcome};
 use super::output;
 use crate::lab::Found;
 use crate::report::{Invocation, finding_files, finding_html, finding_text};
@@ -10,14 +10,19 @@ use crate::store::harmless_json;
 use crate::store::write_whole;
 
 /// Writes the result `name` into `folder`: `NAME.json`, the tables that have a file,
-/// the figures and the page of them. Prints the finding, or with `print_json` the JSON.
+/// the figures and the page of them. Prints the finding, or with `print_json` the JSON. The
+/// outcome is whether traced and modelled agree.
 pub(super) fn deliver(
     name: &str,
-    Found { json, finding, .. }: &Found,
+    Found {
+        json,
+        finding,
+        agrees,
+    }: &Found,
     folder: &Path,
     invocation: &Invocation,
     print_json: bool,
-) -> Result<(), Failure> {
+) -> Result<Outcome, Failure> {
     let json = &harmless_json(json);
     let mut files = vec![(format!("{name}.json"), json.clone())];
     files.extend(finding_files(finding));
@@ -27,5 +32,10 @@ pub(super) fn deliver(
         write_whole(&folder.join(file), |w| w.write_all(text.as_bytes()))?;
     }
     let text = finding_text(finding);
-    output::print(if print_json { json } else { &text })
+    output::print(if print_json { json } else { &text })?;
+    Ok(if *agrees {
+        Outcome::Done
+    } else {
+        Outcome::Disagreed
+    })
 }

@@ -5,8 +5,9 @@ use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
 use super::load_run::read_run;
-use super::process::{pool, version};
+use super::process::pool;
 use super::run_folder::{LOCATED, RunFolder};
+use super::spelled::Spelled;
 use super::unexplained::{Photographs, elements};
 use super::{Outcome, progress};
 use crate::jobs::need;
@@ -41,23 +42,14 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
     });
     let located = found.map_err(|e| Failure::of(e.into()).if_stopped(NOTHING_KEPT))?;
     let found = Found {
-        json: serde_json::to_string_pretty(&located).map_err(|e| Failure::of(e.into()))?,
+        json: serde_json::to_string_pretty(&located)?,
         finding: located.describe(),
         agrees: located.is_found(),
     };
-    deliver(
-        "locate",
-        &found,
-        &output,
-        &invocation(args, &scene),
-        args.json,
-    )?;
+    let asked = invocation(args, &scene);
+    let outcome = deliver("locate", &found, &output, &asked, args.json)?;
     console.say(format!("{}: written", output.display()));
-    Ok(if found.agrees {
-        Outcome::Done
-    } else {
-        Outcome::Disagreed
-    })
+    Ok(outcome)
 }
 
 /// What is to be done, with what is not given.
@@ -84,41 +76,16 @@ fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
 
 /// How to ask for it again.
 fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
-    let dir = args.dir.file_name().unwrap_or(args.dir.as_os_str());
-    let mut options = vec![
-        ("--what".to_owned(), args.what.to_owned()),
-        ("--steps".to_owned(), args.steps.to_string()),
-        ("--orders".to_owned(), args.orders.to_string()),
-        ("--seed".to_owned(), args.seed.to_string()),
-        (
-            "--integration".to_owned(),
-            args.integration.name().to_owned(),
-        ),
-    ];
-    let mut given = |name: &str, value: Option<String>| {
-        options.extend(value.map(|value| (name.to_owned(), value)));
-    };
-    let pair = |x: [String; 2], between: &str| x.join(between);
-    given(
-        "--range",
-        args.range.map(|r| pair(r.map(|x| x.to_string()), ",")),
-    );
-    given(
-        "--elements",
-        args.elements.map(|n| pair(n.map(|x| x.to_string()), "x")),
-    );
-    given(
-        "--frame-polynomial",
-        args.frame_polynomial.map(|n| n.to_string()),
-    );
-    let path = args.left_out.as_ref();
-    given("--left-out", path.map(|p| p.to_string_lossy().into_owned()));
-    options.extend(args.occlusion.again());
-    Invocation {
-        command: vec!["locate".to_owned(), dir.to_string_lossy().into_owned()],
-        scene: scene.clone(),
-        file: "scene.toml".to_owned(),
-        options,
-        version: version().to_owned(),
-    }
+    Spelled::default()
+        .with("--what", args.what)
+        .with("--steps", args.steps)
+        .with("--orders", args.orders)
+        .with("--seed", args.seed)
+        .with("--integration", args.integration)
+        .pair("--range", args.range, ",")
+        .pair("--elements", args.elements, "x")
+        .maybe("--frame-polynomial", args.frame_polynomial)
+        .file("--left-out", args.left_out.as_deref())
+        .flag("--no-occlusion", args.occlusion.no_occlusion)
+        .of_folder("locate", &args.dir, scene)
 }

@@ -88,6 +88,7 @@ mod run_folder;
 mod scene;
 pub mod serve;
 mod settings;
+mod spelled;
 mod stack;
 mod study;
 mod suspicious;

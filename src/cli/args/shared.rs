@@ -44,7 +44,7 @@ pub(in crate::cli) struct TraceArgs {
 pub(in crate::cli) struct OcclusionArgs {
     /// Leave out of the model what stands in the way, as the published one does
     #[arg(long)]
-    no_occlusion: bool,
+    pub no_occlusion: bool,
     /// What stands in the way is considered without being asked
     #[arg(long = "occlusion", hide = true, conflicts_with = "no_occlusion")]
     _occlusion: bool,
@@ -57,12 +57,6 @@ impl OcclusionArgs {
         } else {
             Occlusion::Considered
         }
-    }
-
-    /// The option with its value, to ask for it again; none where it is usual.
-    pub(in crate::cli) fn again(&self) -> Option<(String, String)> {
-        self.no_occlusion
-            .then(|| ("--no-occlusion".to_owned(), String::new()))
     }
 }
 
