@@ -5,7 +5,7 @@ use std::sync::Arc;
 use phicam::jobs::need;
 use phicam::lab::finding::Describe;
 use phicam::lab::{
-    CalibrationPlan, Certainty, Free, LOCATABLE, LocatedPlan, Unexplained, fewer, polynomials,
+    CalibrationPlan, Certainty, Free, LOCATABLE, LocatedPlan, Photographs, fewer, polynomials,
 };
 use phicam::matrix::Matrix;
 use phicam::scene;
@@ -27,56 +27,36 @@ pub fn locatable() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Photographs of unknown reflectances.
-struct Photographs {
-    phi: Matrix,
-    stderr: Option<Matrix>,
-    certainty: Certainty,
-    left_out: Option<Matrix>,
-    patterns: Option<Matrix>,
-}
-
-impl Photographs {
-    fn read(
-        scene: &scene::Scene,
-        phi: &Bound<'_, PyAny>,
-        stderr: Option<&Bound<'_, PyAny>>,
-        left_out: Option<&Bound<'_, PyAny>>,
-        (degree, certainty): (Option<u8>, Certainty),
-    ) -> PyResult<Self> {
-        let size = [scene.camera.columns, scene.camera.rows];
-        let read = Self {
-            phi: matrix(phi, "phi")?,
-            stderr: errors(stderr, "stderr")?,
-            certainty,
-            left_out: maybe(left_out, "left_out")?,
-            patterns: degree.map(|degree| polynomials(size, usize::from(degree))),
-        };
-        let expected = (scene.camera.pixels(), scene.laser.spots.len());
-        let given = [
-            Some(&read.phi),
-            read.stderr.as_ref(),
-            read.left_out.as_ref(),
-        ];
-        let shapes = given.map(|m| m.map_or(expected, Matrix::shape));
-        if let Some((rows, columns)) = shapes.into_iter().find(|shape| *shape != expected) {
-            let cause = format!(
-                "an array is {rows} × {columns}, but the scene has {} pixels and {} spots",
-                expected.0, expected.1
-            );
-            return Err(input(cause, "give arrays of pixels × spots"));
-        }
-        Ok(read)
+fn read(
+    scene: &scene::Scene,
+    phi: &Bound<'_, PyAny>,
+    stderr: Option<&Bound<'_, PyAny>>,
+    left_out: Option<&Bound<'_, PyAny>>,
+    (degree, certainty): (Option<u8>, Certainty),
+) -> PyResult<Photographs> {
+    let size = [scene.camera.columns, scene.camera.rows];
+    let read = Photographs {
+        phi: matrix(phi, "phi")?,
+        stderr: errors(stderr, "stderr")?,
+        certainty,
+        left_out: maybe(left_out, "left_out")?,
+        patterns: degree.map(|degree| polynomials(size, usize::from(degree))),
+    };
+    let expected = (scene.camera.pixels(), scene.laser.spots.len());
+    let given = [
+        Some(&read.phi),
+        read.stderr.as_ref(),
+        read.left_out.as_ref(),
+    ];
+    let shapes = given.map(|m| m.map_or(expected, Matrix::shape));
+    if let Some((rows, columns)) = shapes.into_iter().find(|shape| *shape != expected) {
+        let cause = format!(
+            "an array is {rows} × {columns}, but the scene has {} pixels and {} spots",
+            expected.0, expected.1
+        );
+        return Err(input(cause, "give arrays of pixels × spots"));
     }
-
-    fn unexplained(&self) -> Unexplained<'_> {
-        Unexplained {
-            phi: &self.phi,
-            stderr: self.stderr.as_ref(),
-            certainty: self.certainty,
-            left_out: self.left_out.as_ref(),
-            patterns: self.patterns.as_ref(),
-        }
-    }
+    Ok(read)
 }
 
 /// The elements that are asked for, else fewer where the scene has many.
@@ -138,7 +118,7 @@ pub fn calibrate<'py>(
     })?;
     let known = Certainty::new(ways(errors_name)?, replicates);
     let beside = (frame_polynomial, known);
-    let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, beside)?;
+    let photographs = read(&scene.inner, phi, stderr, left_out, beside)?;
     let own = Arc::clone(&scene.inner);
     let done = run(py, threads, progress, move |control| {
         let found = plan.calibrate(&own, &photographs.unexplained(), control)?;
@@ -198,7 +178,7 @@ pub fn locate<'py>(
     fits(py, &scene.inner, move |scene| need::locate(scene, elements))?;
     let known = Certainty::new(ways(errors_name)?, replicates);
     let beside = (frame_polynomial, known);
-    let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, beside)?;
+    let photographs = read(&scene.inner, phi, stderr, left_out, beside)?;
     let own = Arc::clone(&scene.inner);
     let done = run(py, threads, progress, move |control| {
         plan.locate(&own, &photographs.unexplained(), control)

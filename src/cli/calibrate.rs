@@ -9,7 +9,7 @@ use super::load_run::{read_bare_scene, read_run};
 use super::process::pool;
 use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
 use super::spelled::Spelled;
-use super::unexplained::{Photographs, elements};
+use super::unexplained::{elements, of_files, of_run};
 use super::{Outcome, progress};
 use crate::folder::{Record, write_copies};
 use crate::jobs::need;
@@ -36,12 +36,12 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     let photographs = match (&args.phi, &record) {
         (None, Some(record)) => {
             let beside = (polynomial, args.background);
-            Photographs::read(&args.dir, (&scene, record), left_out, beside)?
+            of_run(&args.dir, (&scene, record), left_out, beside)?
         }
         (phi, _) => {
             let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
             let beside = [args.stderr.as_deref(), left_out];
-            Photographs::of_files(&phi, beside, &scene, polynomial)?
+            of_files(&phi, beside, &scene, (polynomial, args.replicates))?
         }
     };
     let output = args
@@ -52,7 +52,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     let pool = pool(args.threads)?;
     let what = format!("calibrate {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
-        pool.install(|| plan.calibrate(&scene, &photographs.unexplained(args.replicates), control))
+        pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
     });
     let calibration = match found {
         Ok(calibration) => calibration,

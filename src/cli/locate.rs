@@ -8,7 +8,7 @@ use super::load_run::read_run;
 use super::process::pool;
 use super::run_folder::{LOCATED, RunFolder};
 use super::spelled::Spelled;
-use super::unexplained::{Photographs, elements};
+use super::unexplained::{elements, of_run};
 use super::{Outcome, progress};
 use crate::jobs::need;
 use crate::lab::finding::Describe;
@@ -24,7 +24,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
     let (scene, record) = read_run(&args.dir, console)?;
     let plan = plan(args, &scene, console);
     need::locate(&scene, plan.elements)?;
-    let photographs = Photographs::read(
+    let photographs = of_run(
         &args.dir,
         (&scene, &record),
         args.left_out.as_deref(),
@@ -38,7 +38,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
     let pool = pool(args.threads)?;
     let what = format!("locate in {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
-        pool.install(|| plan.locate(&scene, &photographs.unexplained(None), control))
+        pool.install(|| plan.locate(&scene, &photographs.unexplained(), control))
     });
     let located = found.map_err(|e| Failure::of(e.into()).if_stopped(NOTHING_KEPT))?;
     let found = Found {

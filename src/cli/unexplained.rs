@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_photographs, read_stderr};
 use super::run_folder::{PHI, STDERR};
 use crate::folder::Record;
-use crate::lab::{Certainty, Unexplained, fewer, polynomials};
+use crate::lab::{Certainty, Photographs, fewer, polynomials};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
@@ -34,76 +34,55 @@ pub(super) fn elements(
     Some([nu, nv])
 }
 
-/// The matrices of [`Unexplained`].
-pub(super) struct Photographs {
-    phi: Matrix,
-    stderr: Option<Matrix>,
-    certainty: Certainty,
-    left_out: Option<Matrix>,
-    patterns: Option<Matrix>,
+/// The photographs of the folder `dir`; other light in each frame is a polynomial of degree
+/// `polynomial`, and there may be a `background` that all frames share.
+pub(super) fn of_run(
+    dir: &Path,
+    (scene, record): (&Scene, &Record),
+    left_out: Option<&Path>,
+    (polynomial, background): (Option<u8>, bool),
+) -> Result<Photographs, Failure> {
+    let file = dir.join(STDERR);
+    // Of imported photographs the noise may be unknown.
+    let is_unknown = record.is_imported() && !file.exists();
+    let left_out = match left_out {
+        Some(file) => Some(read_matrix(file, scene)?),
+        None => read_left_out(dir, scene)?,
+    };
+    let stderr = (!is_unknown).then_some(file);
+    new(
+        (&dir.join(PHI), stderr.as_deref()),
+        (left_out, certainty(&record.origin, background)),
+        (scene, polynomial),
+    )
 }
 
-impl Photographs {
-    /// Those of the folder `dir`; other light in each frame is a polynomial of degree `polynomial`,
-    /// and there may be a `background` that all frames share.
-    pub(super) fn read(
-        dir: &Path,
-        (scene, record): (&Scene, &Record),
-        left_out: Option<&Path>,
-        (polynomial, background): (Option<u8>, bool),
-    ) -> Result<Self, Failure> {
-        let file = dir.join(STDERR);
-        // Of imported photographs the noise may be unknown.
-        let is_unknown = record.is_imported() && !file.exists();
-        let left_out = match left_out {
-            Some(file) => Some(read_matrix(file, scene)?),
-            None => read_left_out(dir, scene)?,
-        };
-        let stderr = (!is_unknown).then_some(file);
-        Self::new(
-            (&dir.join(PHI), stderr.as_deref()),
-            (left_out, certainty(&record.origin, background)),
-            (scene, polynomial),
-        )
-    }
+/// Those of files of their own; without `stderr` the noise is unknown, else known as from so many
+/// `replicates`, where that is said.
+pub(super) fn of_files(
+    phi: &Path,
+    [stderr, left_out]: [Option<&Path>; 2],
+    scene: &Scene,
+    (polynomial, replicates): (Option<u8>, Option<u32>),
+) -> Result<Photographs, Failure> {
+    let left_out = left_out.map(|file| read_matrix(file, scene)).transpose()?;
+    let known = (left_out, Certainty::STATED.or(replicates));
+    new((phi, stderr), known, (scene, polynomial))
+}
 
-    /// Those of files of their own; without `stderr` the noise is unknown.
-    pub(super) fn of_files(
-        phi: &Path,
-        [stderr, left_out]: [Option<&Path>; 2],
-        scene: &Scene,
-        polynomial: Option<u8>,
-    ) -> Result<Self, Failure> {
-        let left_out = left_out.map(|file| read_matrix(file, scene)).transpose()?;
-        let known = (left_out, Certainty::STATED);
-        Self::new((phi, stderr), known, (scene, polynomial))
-    }
-
-    fn new(
-        (phi, stderr): (&Path, Option<&Path>),
-        (left_out, certainty): (Option<Matrix>, Certainty),
-        (scene, polynomial): (&Scene, Option<u8>),
-    ) -> Result<Self, Failure> {
-        let flags = left_out.as_ref();
-        Ok(Self {
-            phi: read_photographs(phi, flags, scene)?,
-            stderr: stderr
-                .map(|file| read_stderr(file, flags, scene))
-                .transpose()?,
-            certainty,
-            patterns: patterns(scene, polynomial),
-            left_out,
-        })
-    }
-
-    /// The same; their errors are known as from so many `replicates`, where that is said.
-    pub(super) fn unexplained(&self, replicates: Option<u32>) -> Unexplained<'_> {
-        Unexplained {
-            phi: &self.phi,
-            stderr: self.stderr.as_ref(),
-            certainty: self.certainty.or(replicates),
-            left_out: self.left_out.as_ref(),
-            patterns: self.patterns.as_ref(),
-        }
-    }
+fn new(
+    (phi, stderr): (&Path, Option<&Path>),
+    (left_out, certainty): (Option<Matrix>, Certainty),
+    (scene, polynomial): (&Scene, Option<u8>),
+) -> Result<Photographs, Failure> {
+    let flags = left_out.as_ref();
+    Ok(Photographs {
+        phi: read_photographs(phi, flags, scene)?,
+        stderr: stderr
+            .map(|file| read_stderr(file, flags, scene))
+            .transpose()?,
+        certainty,
+        patterns: patterns(scene, polynomial),
+        left_out,
+    })
 }

@@ -282,7 +282,7 @@ impl LocatedPlan {
             ..control
         };
         let own = other.of(photographs);
-        let found = again.locate(scene, &own.unexplained(photographs.patterns), quiet)?;
+        let found = again.locate(scene, &own.unexplained(), quiet)?;
         let misfit = found.curve.iter().find(|at| at.log_likelihood == 0.0);
         let misfit = misfit.map_or(f64::INFINITY, |at| at.misfit);
         let mistaken = Mistaken::new(other.what, stated, [found.log_likelihood, misfit]);

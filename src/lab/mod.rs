@@ -272,5 +272,5 @@ pub use summary::describe_render;
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
-pub use unexplained::{Unexplained, fewer};
+pub use unexplained::{Photographs, Unexplained, fewer};
 pub use validation::{Against, Integration, Measured, Validation, ValidationError, validate};

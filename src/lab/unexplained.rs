@@ -37,6 +37,34 @@ pub struct Unexplained<'a> {
     pub patterns: Option<&'a Matrix>,
 }
 
+/// The same with matrices of its own.
+#[derive(Clone, Debug)]
+pub struct Photographs {
+    /// As [`Unexplained::phi`].
+    pub phi: Matrix,
+    /// As [`Unexplained::stderr`].
+    pub stderr: Option<Matrix>,
+    /// As [`Unexplained::certainty`].
+    pub certainty: Certainty,
+    /// As [`Unexplained::left_out`].
+    pub left_out: Option<Matrix>,
+    /// As [`Unexplained::patterns`].
+    pub patterns: Option<Matrix>,
+}
+
+impl Photographs {
+    /// Themselves.
+    pub fn unexplained(&self) -> Unexplained<'_> {
+        Unexplained {
+            phi: &self.phi,
+            stderr: self.stderr.as_ref(),
+            certainty: self.certainty,
+            left_out: self.left_out.as_ref(),
+            patterns: self.patterns.as_ref(),
+        }
+    }
+}
+
 impl Unexplained<'_> {
     /// √w of each pixel of frame l: 1/σ, 0 where the entry does not count or nothing is known of
     /// its error.

@@ -9,8 +9,7 @@ use serde::Serialize;
 
 use super::frames::{Side, TermsOf};
 use super::likelihood::Fit;
-use crate::lab::certainty::Certainty;
-use crate::lab::unexplained::Unexplained;
+use crate::lab::unexplained::{Photographs, Unexplained};
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
 
@@ -40,26 +39,6 @@ pub(super) struct Rearranged {
     /// The frame that is taken for each spot, and the pixel for each pixel.
     frames: Vec<usize>,
     pixels: Vec<usize>,
-}
-
-/// Photographs as owned matrices.
-pub(super) struct Photographs {
-    phi: Matrix,
-    stderr: Option<Matrix>,
-    certainty: Certainty,
-    left_out: Option<Matrix>,
-}
-
-impl Photographs {
-    pub(super) fn unexplained<'a>(&'a self, patterns: Option<&'a Matrix>) -> Unexplained<'a> {
-        Unexplained {
-            phi: &self.phi,
-            stderr: self.stderr.as_ref(),
-            certainty: self.certainty,
-            left_out: self.left_out.as_ref(),
-            patterns,
-        }
-    }
 }
 
 impl Rearranged {
@@ -144,6 +123,7 @@ impl Rearranged {
             stderr: stated.stderr.map(in_order),
             certainty: stated.certainty,
             left_out: stated.left_out.map(in_order),
+            patterns: stated.patterns.cloned(),
         }
     }
 }
@@ -166,7 +146,7 @@ pub(super) fn likeliest(
         // Frames are what they are in any order; pixels see other light in other places.
         let found = if order.frames == stated {
             let own = order.of(of);
-            let sides = Side::all(&own.unexplained(of.patterns), terms.camera)?;
+            let sides = Side::all(&own.unexplained(), terms.camera)?;
             fit(&sides, &stated)?
         } else {
             fit(sides, &order.frames)?
