@@ -76,20 +76,13 @@ impl BrdfStudy {
             ..Table::of(
                 self.rows(),
                 [
-                    (Column::text("assumed of the wall", ""), |a| {
-                        (&a.name).into()
-                    }),
-                    (Column::text("verdict", ""), |a| verdict(a).into()),
-                    (Column::number("difference", "", "", 3), |a| {
-                        a.agreement.relative_difference.into()
-                    }),
-                    (Column::number("noise", "", "", 3), |a| {
-                        a.agreement.relative_noise.into()
-                    }),
-                    (Column::number("largest z", "", "", 3), |a| {
-                        a.agreement.largest_z.into()
-                    }),
-                    (Column::number("scale", "", "", 5), |a| a.scale.into()),
+                    Column::text("assumed of the wall", "").of(|a| (&a.name).into()),
+                    Column::text("verdict", "").of(|a| verdict(a).into()),
+                    Column::number("difference", "", "", 3)
+                        .of(|a| a.agreement.relative_difference.into()),
+                    Column::number("noise", "", "", 3).of(|a| a.agreement.relative_noise.into()),
+                    Column::number("largest z", "", "", 3).of(|a| a.agreement.largest_z.into()),
+                    Column::number("scale", "", "", 5).of(|a| a.scale.into()),
                 ],
             )
         }
@@ -113,18 +106,11 @@ impl BrdfStudy {
             ..Table::of(
                 rows(),
                 [
-                    (Column::text("assumed of the wall", ""), |(name, _)| {
-                        (*name).into()
-                    }),
-                    (Column::estimate("MTF raw", "", "", 4), |(_, q)| {
-                        Cell::spread(q.mtf_raw)
-                    }),
-                    (Column::estimate("correlation", "", "", 4), |(_, q)| {
-                        Cell::spread(q.correlation)
-                    }),
-                    (Column::estimate("RMSE", "", "", 4), |(_, q)| {
-                        Cell::spread(q.rmse)
-                    }),
+                    Column::text("assumed of the wall", "").of(|(name, _)| (*name).into()),
+                    Column::estimate("MTF raw", "", "", 4).of(|(_, q)| Cell::spread(q.mtf_raw)),
+                    Column::estimate("correlation", "", "", 4)
+                        .of(|(_, q)| Cell::spread(q.correlation)),
+                    Column::estimate("RMSE", "", "", 4).of(|(_, q)| Cell::spread(q.rmse)),
                 ],
             )
         }
@@ -137,16 +123,12 @@ impl BrdfStudy {
             ..Table::of(
                 &self.ratios,
                 [
-                    (Column::text("method", ""), |r| Cell::name(&r.method)),
-                    (Column::number("noise", "", "", 2), |r| r.noise.into()),
-                    (Column::number("MTF raw ×", "", "", 4), |r| {
-                        r.mtf_raw.into()
-                    }),
-                    (Column::number("correlation ×", "", "", 4), |r| {
-                        r.correlation.into()
-                    }),
-                    (Column::number("RMSE ×", "", "", 4), |r| r.rmse.into()),
-                    (Column::text("reaches it within 10 %", ""), |r| {
+                    Column::text("method", "").of(|r| Cell::name(&r.method)),
+                    Column::number("noise", "", "", 2).of(|r| r.noise.into()),
+                    Column::number("MTF raw ×", "", "", 4).of(|r| r.mtf_raw.into()),
+                    Column::number("correlation ×", "", "", 4).of(|r| r.correlation.into()),
+                    Column::number("RMSE ×", "", "", 4).of(|r| r.rmse.into()),
+                    Column::text("reaches it within 10 %", "").of(|r| {
                         match r.reaches {
                             Some(true) => "yes",
                             Some(false) => "NO",

@@ -72,17 +72,11 @@ impl ErrorBudget {
             ..Table::of(
                 &self.terms,
                 [
-                    (Column::text("cause", "cause"), |t| (&t.name).into()),
-                    (Column::estimate("size", "size", "", 3), |t| t.size.into()),
-                    (
-                        Column::estimate("after the best single scale", "after_scale", "", 3),
-                        |t| t.after_scale.into(),
-                    ),
-                    (
-                        Column::number("of the object's signal", "of_signal", "", 3),
-                        |t| t.of_signal.into(),
-                    ),
-                    (Column::text("in the sum", "in_sum"), |t| t.in_sum.into()),
+                    Column::text("cause", "cause").of(|t| (&t.name).into()),
+                    Column::estimate("size", "size", "", 3).of(|t| t.size.into()),
+                    Column::estimate("after the best single scale", "after_scale", "", 3).of(|t| t.after_scale.into()),
+                    Column::number("of the object's signal", "of_signal", "", 3).of(|t| t.of_signal.into()),
+                    Column::text("in the sum", "in_sum").of(|t| t.in_sum.into()),
                 ],
             )
         }

@@ -223,15 +223,10 @@ impl Experiment {
             ..Table::of(
                 &self.thresholds,
                 [
-                    (Column::text("analysis", ""), |t| (&t.analysis).into()),
-                    (Column::text("glare", ""), |t| (&t.spread).into()),
-                    (
-                        Column::number("largest glare over signal", "", "", 2),
-                        |t| t.glare.into(),
-                    ),
-                    (Column::number("shortest exposure", "", "s", 2), |t| {
-                        t.exposure.into()
-                    }),
+                    Column::text("analysis", "").of(|t| (&t.analysis).into()),
+                    Column::text("glare", "").of(|t| (&t.spread).into()),
+                    Column::number("largest glare over signal", "", "", 2).of(|t| t.glare.into()),
+                    Column::number("shortest exposure", "", "s", 2).of(|t| t.exposure.into()),
                 ],
             )
         }

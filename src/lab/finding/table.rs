@@ -162,6 +162,11 @@ impl Column {
         Self::number(&key.replace('_', " "), key, "", 4)
     }
 
+    /// With what it says of an item.
+    pub fn of<T>(self, cell: CellOf<T>) -> (Self, CellOf<T>) {
+        (self, cell)
+    }
+
     /// A column of numbers with their standard errors.
     pub fn estimate(name: &str, key: &str, unit: &str, digits: usize) -> Self {
         Self {

@@ -55,21 +55,16 @@ impl Power {
             ..Table::of(
                 &self.rows,
                 [
-                    (Column::text("estimator", ""), |r| Cell::name(&r.estimator)),
-                    (Column::text("samples", ""), |r| r.samples.into()),
-                    (Column::text("seeds", ""), |r| r.seeds.into()),
-                    (Column::number("χ²/dof", "", "", 4), |r| {
-                        r.chi2_per_dof.into()
-                    }),
-                    (Column::text("false alarms", ""), |r| r.false_alarms.into()),
-                    (Column::text("expected", ""), |r| {
-                        format!("{} to {}", r.expected[0], r.expected[1]).into()
-                    }),
-                    (Column::text("as stated", ""), |r| r.as_stated().into()),
-                    (
-                        Column::number("smallest scale error detected, median", "", "", 2),
-                        |r| r.smallest_scale.into(),
-                    ),
+                    Column::text("estimator", "").of(|r| Cell::name(&r.estimator)),
+                    Column::text("samples", "").of(|r| r.samples.into()),
+                    Column::text("seeds", "").of(|r| r.seeds.into()),
+                    Column::number("χ²/dof", "", "", 4).of(|r| r.chi2_per_dof.into()),
+                    Column::text("false alarms", "").of(|r| r.false_alarms.into()),
+                    Column::text("expected", "")
+                        .of(|r| format!("{} to {}", r.expected[0], r.expected[1]).into()),
+                    Column::text("as stated", "").of(|r| r.as_stated().into()),
+                    Column::number("smallest scale error detected, median", "", "", 2)
+                        .of(|r| r.smallest_scale.into()),
                 ],
             )
         }
@@ -82,18 +77,12 @@ impl Power {
             ..Table::of(
                 all.flat_map(|r| r.detections.iter().map(move |d| (r, d))),
                 [
-                    (Column::text("estimator", ""), |(r, _)| {
-                        Cell::name(&r.estimator)
-                    }),
-                    (Column::text("what is wrong", ""), |(_, d)| {
-                        (&d.error).into()
-                    }),
-                    (Column::text("samples", ""), |(r, _)| r.samples.into()),
-                    (Column::number("Φcam off by", "", "", 2), |(_, d)| {
-                        d.size.into()
-                    }),
-                    (Column::text("rejected", ""), |(_, d)| d.rejected.into()),
-                    (Column::text("of", ""), |(r, _)| r.seeds.into()),
+                    Column::text("estimator", "").of(|(r, _)| Cell::name(&r.estimator)),
+                    Column::text("what is wrong", "").of(|(_, d)| (&d.error).into()),
+                    Column::text("samples", "").of(|(r, _)| r.samples.into()),
+                    Column::number("Φcam off by", "", "", 2).of(|(_, d)| d.size.into()),
+                    Column::text("rejected", "").of(|(_, d)| d.rejected.into()),
+                    Column::text("of", "").of(|(r, _)| r.seeds.into()),
                 ],
             )
         }

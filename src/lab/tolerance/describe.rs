@@ -128,30 +128,17 @@ impl Tolerance {
             ..Table::of(
                 things,
                 [
-                    (Column::text("what is off", ""), |(p, ..)| (&p.name).into()),
-                    (Column::number("dΦ/Φ a unit", "", "", 2), |(_, r, _)| {
-                        r.map(|r| r.change / r.size).into()
-                    }),
-                    (
-                        Column::number("after the best single scale", "", "", 2),
-                        |(_, r, _)| r.map(|r| r.after_scale / r.size).into(),
-                    ),
-                    (Column::number("by derivative", "", "", 2), |(p, ..)| {
-                        p.by_derivative.map(|d| d[0]).into()
-                    }),
-                    (
-                        Column::number("by derivative, scaled", "", "", 2),
-                        |(p, ..)| p.by_derivative.map(|d| d[1]).into(),
-                    ),
-                    (Column::text("known to at least", ""), |(p, ..)| {
+                    Column::text("what is off", "").of(|(p, ..)| (&p.name).into()),
+                    Column::number("dΦ/Φ a unit", "", "", 2).of(|(_, r, _)| r.map(|r| r.change / r.size).into()),
+                    Column::number("after the best single scale", "", "", 2).of(|(_, r, _)| r.map(|r| r.after_scale / r.size).into()),
+                    Column::number("by derivative", "", "", 2).of(|(p, ..)| p.by_derivative.map(|d| d[0]).into()),
+                    Column::number("by derivative, scaled", "", "", 2).of(|(p, ..)| p.by_derivative.map(|d| d[1]).into()),
+                    Column::text("known to at least", "").of(|(p, ..)| {
                         p.needed
                             .map_or("–".to_owned(), |x| format!("{} {}", figure(x, 2), p.unit))
                             .into()
                     }),
-                    (
-                        Column::text("pattern lost (MTF halved) at", ""),
-                        |(.., lost)| lost.into(),
-                    ),
+                    Column::text("pattern lost (MTF halved) at", "").of(|(.., lost)| lost.into()),
                 ],
             )
         }
@@ -166,24 +153,13 @@ impl Tolerance {
             ..Table::of(
                 all.flat_map(|p| p.rows.iter().map(move |r| (p, r))),
                 [
-                    (Column::text("what is off", "what"), |(p, _)| {
-                        (&p.name).into()
-                    }),
-                    (Column::text("unit", "unit"), |(p, _)| Cell::name(&p.unit)),
-                    (Column::number("size", "size", "", 2), |(_, r)| {
-                        r.size.into()
-                    }),
-                    (
-                        Column::number("‖ΔΦ‖/‖Φ‖", "change", "", 3),
-                        |(_, r)| r.change.into(),
-                    ),
-                    (
-                        Column::number("after the best single scale", "after_scale", "", 3),
-                        |(_, r)| r.after_scale.into(),
-                    ),
-                    (Column::number("MTF raw", "mtf", "", 3), |(_, r)| {
-                        r.mtf.into()
-                    }),
+                    Column::text("what is off", "what").of(|(p, _)| (&p.name).into()),
+                    Column::text("unit", "unit").of(|(p, _)| Cell::name(&p.unit)),
+                    Column::number("size", "size", "", 2).of(|(_, r)| r.size.into()),
+                    Column::number("‖ΔΦ‖/‖Φ‖", "change", "", 3).of(|(_, r)| r.change.into()),
+                    Column::number("after the best single scale", "after_scale", "", 3)
+                        .of(|(_, r)| r.after_scale.into()),
+                    Column::number("MTF raw", "mtf", "", 3).of(|(_, r)| r.mtf.into()),
                 ],
             )
         }
