@@ -104,34 +104,27 @@ pub fn recovery(group: &[&RecoveredObject]) -> Table {
 
 /// Whether each method's picture explains the photographs.
 pub fn fits(group: &[&RecoveredObject]) -> Table {
-    let verdict = |r: &RecoveredObject| match &r.fit {
+    let fits = |r: &RecoveredObject| match &r.fit {
         Some(fit) if fit.is_open() => "open",
         Some(fit) if fit.fits => "yes",
         Some(_) => "NO",
         None => "not known",
     };
-    let row = |r: &&RecoveredObject| {
-        let fit = r.fit.as_ref();
-        vec![
-            r.method.as_str().into(),
-            verdict(r).into(),
-            fit.map(|f| f.chi2_per_dof).into(),
-            fit.map(|f| f.dof).into(),
-            fit.map(|f| f.p).into(),
-        ]
-    };
+    let judged = group.iter().map(|r| (fits(r), *r, r.fit.as_ref()));
     Table {
         caption: "does what each would photograph fit the photographs?".to_owned(),
-        columns: vec![
-            Column::text("method", ""),
-            Column::text("fits", ""),
-            Column::number("χ²/dof", "", "", 4),
-            Column::number("dof", "", "", 5),
-            Column::number("P", "", "", 2),
-        ],
-        rows: group.iter().map(row).collect(),
         note: pooled(group) + &likelier(group) + &determined(group.get(..1).unwrap_or_default()),
-        ..Table::default()
+        ..Table::of(
+            judged,
+            [
+                Column::text("method", "").of(|(_, r, _)| (&r.method).into()),
+                Column::text("fits", "").of(|(fits, ..)| (*fits).into()),
+                Column::number("χ²/dof", "", "", 4)
+                    .of(|(.., fit)| fit.map(|f| f.chi2_per_dof).into()),
+                Column::number("dof", "", "", 5).of(|(.., fit)| fit.map(|f| f.dof).into()),
+                Column::number("P", "", "", 2).of(|(.., fit)| fit.map(|f| f.p).into()),
+            ],
+        )
     }
 }
 

@@ -146,50 +146,34 @@ impl Convergence {
 impl Describe for Convergence {
     fn describe(&self) -> Finding {
         let title = format!("How fast the error falls: {}", self.scene);
-        let named = |c: &Curve| {
-            [&c.estimator, &c.sampler]
-                .map(|n| Cell::Name(n.clone()))
-                .to_vec()
-        };
-        let with = |c: &Curve, more: Vec<Cell>| [named(c), more].concat();
-        let heads = [Column::text("estimator", ""), Column::text("sampler", "")];
         let slopes = Table {
             caption: "Slopes of log error against log samples".to_owned(),
-            columns: [
-                &heads[..],
-                &[
-                    Column::number("slope", "", "", 3),
-                    Column::number("± by the scatter", "slope_scatter", "", 2),
-                    Column::number("± by the quadrature", "slope_bound", "", 2),
+            ..Table::of(
+                &self.curves,
+                [
+                    Column::text("estimator", "").of(|c| Cell::name(&c.estimator)),
+                    Column::text("sampler", "").of(|c| Cell::name(&c.sampler)),
+                    Column::number("slope", "", "", 3).of(|c| c.slope.into()),
+                    Column::number("± by the scatter", "slope_scatter", "", 2)
+                        .of(|c| c.slope_scatter.into()),
+                    Column::number("± by the quadrature", "slope_bound", "", 2)
+                        .of(|c| c.slope_bound.into()),
                 ],
-            ]
-            .concat(),
-            rows: self
-                .curves
-                .iter()
-                .map(|c| {
-                    let errors = [c.slope_scatter, c.slope_bound].map(Cell::Number);
-                    with(c, [&[c.slope.into()][..], &errors].concat())
-                })
-                .collect(),
-            ..Table::default()
+            )
         };
-        let step =
-            |c: &Curve, s: &Step| with(c, vec![s.samples.into(), s.error.into(), s.stated.into()]);
-        let numbers = [
-            Column::text("samples", ""),
-            Column::number("error", "", "", 4),
-            Column::number("stated standard error", "", "", 4),
-        ];
+        let curves = self.curves.iter();
         let steps = Table {
             caption: "Relative error against converged quadrature".to_owned(),
-            columns: [&heads[..], &numbers].concat(),
-            rows: self
-                .curves
-                .iter()
-                .flat_map(|c| c.steps.iter().map(move |s| step(c, s)))
-                .collect(),
-            ..Table::default()
+            ..Table::of(
+                curves.flat_map(|c| c.steps.iter().map(move |s| (c, s))),
+                [
+                    Column::text("estimator", "").of(|(c, _)| Cell::name(&c.estimator)),
+                    Column::text("sampler", "").of(|(c, _)| Cell::name(&c.sampler)),
+                    Column::text("samples", "").of(|(_, s)| s.samples.into()),
+                    Column::number("error", "", "", 4).of(|(_, s)| s.error.into()),
+                    Column::number("stated standard error", "", "", 4).of(|(_, s)| s.stated.into()),
+                ],
+            )
         };
         let curve = |c: &Curve| {
             let name = format!(

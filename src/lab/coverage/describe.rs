@@ -59,17 +59,6 @@ impl Describe for Coverage {
         };
         let stated = format!("{} %", figure(100.0 * self.confidence, 3));
         let noise = figure(self.noise, 2);
-        let row = |r: &CoverageRow| {
-            vec![
-                Cell::Name(r.method.clone()),
-                r.bands.as_deref().unwrap_or("–").into(),
-                r.percent().unwrap_or(Cell::Number(None)),
-                r.least.map(|x| 100.0 * x).into(),
-                r.together.map(|x| 100.0 * x).into(),
-                r.bias.into(),
-                r.width.into(),
-            ]
-        };
         let reason = |r: &CoverageRow| {
             let reason = r.reason.as_ref()?;
             Some(format!(
@@ -90,23 +79,27 @@ impl Describe for Coverage {
                 "What bands of {stated} cover: {} elements, noise {noise} of each entry, {} seeds",
                 self.elements, self.seeds
             ),
-            columns: vec![
-                Column::text("method", ""),
-                Column::text("promise", ""),
-                Column::number("covered", "", "%", 3),
-                Column::number("the least covered element", "", "%", 3),
-                Column::number("all at once", "", "%", 3),
-                Column::number("rms bias", "", "", 2),
-                Column::number("mean width", "", "", 2),
-            ],
-            rows: self.rows.iter().map(row).collect(),
             note: self
                 .rows
                 .iter()
                 .flat_map(|r| reason(r).into_iter().chain(refuted(r)))
                 .collect::<Vec<_>>()
                 .join(" "),
-            ..Table::default()
+            ..Table::of(
+                &self.rows,
+                [
+                    Column::text("method", "").of(|r| Cell::name(&r.method)),
+                    Column::text("promise", "").of(|r| r.bands.as_deref().unwrap_or("–").into()),
+                    Column::number("covered", "", "%", 3)
+                        .of(|r| r.percent().unwrap_or(Cell::Number(None))),
+                    Column::number("the least covered element", "", "%", 3)
+                        .of(|r| r.least.map(|x| 100.0 * x).into()),
+                    Column::number("all at once", "", "%", 3)
+                        .of(|r| r.together.map(|x| 100.0 * x).into()),
+                    Column::number("rms bias", "", "", 2).of(|r| r.bias.into()),
+                    Column::number("mean width", "", "", 2).of(|r| r.width.into()),
+                ],
+            )
         };
         Finding {
             title: format!("How often bands cover the truth: {}", self.scene),

@@ -180,20 +180,16 @@ impl Indicator {
 }
 
 fn coefficients(caption: &str, all: &[Coefficients]) -> Table {
-    let row = |c: &Coefficients| {
-        let name = Cell::from(&*c.indicator);
-        vec![
-            name,
-            c.pearson.into(),
-            c.spearman.into(),
-            c.configurations.into(),
-        ]
-    };
-    let columns = vec![
-        Column::text("figure", ""),
-        Column::number("Pearson", "", "", 6),
-        Column::number("Spearman", "", "", 6),
-        Column::text("configurations", ""),
-    ];
-    Table::new(caption, columns, all.iter().map(row))
+    Table {
+        caption: caption.to_owned(),
+        ..Table::of(
+            all,
+            [
+                Column::text("figure", "").of(|c| (&*c.indicator).into()),
+                Column::number("Pearson", "", "", 6).of(|c| c.pearson.into()),
+                Column::number("Spearman", "", "", 6).of(|c| c.spearman.into()),
+                Column::text("configurations", "").of(|c| c.configurations.into()),
+            ],
+        )
+    }
 }

@@ -101,15 +101,6 @@ impl Occluders {
             .rows
             .iter()
             .flat_map(|row| row.misplaced.iter().map(move |m| (row, m)));
-        let cells = |(row, m): (&Row, &Misplaced)| {
-            vec![
-                Cell::name(row.kind.name()),
-                row.spots.into(),
-                m.by.into(),
-                Cell::Number(m.recovery.likeness),
-                Cell::Number(m.recovery.p),
-            ]
-        };
         Table {
             caption: format!(
                 "The model's occluder misplaced along the view: {} of {} at a noise of {}, and how probable so bad a fit is",
@@ -118,15 +109,17 @@ impl Occluders {
                 figure(self.level, 1)
             ),
             file: Some("misplaced.csv".to_owned()),
-            columns: vec![
-                Column::text("occluder", "occluder"),
-                Column::text("spots", "spots"),
-                Column::number("by", "by", "", 2),
-                Column::number(self.subjects[0].measure(), "likeness", "", 3),
-                Column::number("P of the fit", "p", "", 2),
-            ],
-            rows: each.map(cells).collect(),
-            ..Table::default()
+            ..Table::of(
+                each,
+                [
+                    Column::text("occluder", "occluder").of(|(row, _)| Cell::name(row.kind.name())),
+                    Column::text("spots", "spots").of(|(row, _)| row.spots.into()),
+                    Column::number("by", "by", "", 2).of(|(_, m)| m.by.into()),
+                    Column::number(self.subjects[0].measure(), "likeness", "", 3)
+                        .of(|(_, m)| m.recovery.likeness.into()),
+                    Column::number("P of the fit", "p", "", 2).of(|(_, m)| m.recovery.p.into()),
+                ],
+            )
         }
     }
 
@@ -135,39 +128,29 @@ impl Occluders {
             .rows
             .iter()
             .flat_map(|row| row.seen.iter().map(move |seen| (row, seen)));
-        let cells = |(row, seen): (&Row, &Photographed)| {
-            let photographs = seen.frames as usize * row.spots;
-            vec![
-                Cell::name(row.kind.name()),
-                row.spots.into(),
-                Cell::name(&seen.subject.name()),
-                seen.exposure.into(),
-                (seen.frames as usize).into(),
-                (seen.exposure * photographs as f64).into(),
-                Cell::name(seen.subject.measure()),
-                Cell::Number(seen.recovery.likeness),
-                Cell::Number(seen.recovery.p),
-            ]
-        };
         Table {
             caption: format!(
                 "Traced photographs through the sensor {}: the fewest frames a spot, of 1, 2, 4, …, that resolve the picture (else the most tried), and what joint makes of them",
                 self.sensor
             ),
             file: Some("traced.csv".to_owned()),
-            columns: vec![
-                Column::text("occluder", "occluder"),
-                Column::text("spots", "spots"),
-                Column::text("picture", "picture"),
-                Column::number("exposure", "exposure", "s", 2),
-                Column::text("frames", "frames"),
-                Column::number("time in all", "time", "s", 2),
-                Column::text("measure", "measure"),
-                Column::number("value", "value", "", 3),
-                Column::number("P of the fit", "p", "", 2),
-            ],
-            rows: each.map(cells).collect(),
-            ..Table::default()
+            ..Table::of(
+                each,
+                [
+                    Column::text("occluder", "occluder").of(|(row, _)| Cell::name(row.kind.name())),
+                    Column::text("spots", "spots").of(|(row, _)| row.spots.into()),
+                    Column::text("picture", "picture").of(|(_, s)| Cell::name(&s.subject.name())),
+                    Column::number("exposure", "exposure", "s", 2).of(|(_, s)| s.exposure.into()),
+                    Column::text("frames", "frames").of(|(_, s)| (s.frames as usize).into()),
+                    Column::number("time in all", "time", "s", 2).of(|(row, s)| {
+                        let photographs = s.frames as usize * row.spots;
+                        (s.exposure * photographs as f64).into()
+                    }),
+                    Column::text("measure", "measure").of(|(_, s)| Cell::name(s.subject.measure())),
+                    Column::number("value", "value", "", 3).of(|(_, s)| s.recovery.likeness.into()),
+                    Column::number("P of the fit", "p", "", 2).of(|(_, s)| s.recovery.p.into()),
+                ],
+            )
         }
     }
 

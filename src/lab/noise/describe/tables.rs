@@ -5,7 +5,6 @@ use crate::lab::finding::{Cell, Column, Table};
 use crate::lab::noise::best::Best;
 use crate::lab::noise::curve::{LIMITS, Lost, NoiseCurve, Point, Reach};
 use crate::lab::noise::picture::Picture;
-use crate::lab::noise::render::RenderNoise;
 use crate::lab::noise::study::NoiseStudy;
 use crate::num::digits::perhaps;
 
@@ -72,20 +71,20 @@ impl NoiseStudy {
 
     /// Noise of renders.
     pub(super) fn renders(&self) -> Table {
-        let row = |m: &RenderNoise| {
-            let estimator = Cell::name(&m.estimator);
-            vec![estimator, m.samples.into(), m.noise.into(), m.level.into()]
-        };
-        Table::new(
-            "Noise of renders (relative, rms over entries) and the level of an entry as noisy",
-            vec![
-                Column::text("estimator", ""),
-                Column::text("samples", ""),
-                Column::number("noise", "", "", 3),
-                Column::number("level", "", "", 3),
-            ],
-            self.render_noise.iter().map(row),
-        )
+        let caption =
+            "Noise of renders (relative, rms over entries) and the level of an entry as noisy";
+        Table {
+            caption: caption.to_owned(),
+            ..Table::of(
+                &self.render_noise,
+                [
+                    Column::text("estimator", "").of(|m| Cell::name(&m.estimator)),
+                    Column::text("samples", "").of(|m| m.samples.into()),
+                    Column::number("noise", "", "", 3).of(|m| m.noise.into()),
+                    Column::number("level", "", "", 3).of(|m| m.level.into()),
+                ],
+            )
+        }
     }
 
     /// Every point of every curve.
