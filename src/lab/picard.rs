@@ -69,19 +69,9 @@ impl Describe for Picard {
         ];
         curves.extend(noise.map(|n| curve("noise in direction i", n, 1.0)));
         let title = "Which singular directions rise above the noise".to_owned();
-        let figure = Figure {
-            file: format!("{name}.svg"),
-            title: title.clone(),
-            plots: vec![Plot {
-                title: String::new(),
-                axes: [
-                    Axis::linear(across, [1.0, sigma.len() as f64]),
-                    Axis::decades(up),
-                ],
-                curves,
-            }],
-            ..Figure::default()
-        };
+        let across = Axis::linear(across, [1.0, sigma.len() as f64]);
+        let plot = Plot::new("", [across, Axis::decades(up)], curves);
+        let figure = Figure::new(format!("{name}.svg"), &title, vec![plot]);
         Finding {
             title,
             tables: vec![table],

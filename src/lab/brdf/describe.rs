@@ -152,24 +152,18 @@ impl BrdfStudy {
             ..Table::of(
                 all.flat_map(|a| a.qualities.iter().map(move |q| (a, &a.agreement, q))),
                 [
-                    (number("assumed"), |(a, ..)| (&a.name).into()),
-                    (number("agrees"), |(_, g, _)| g.agrees.into()),
-                    (number("relative_difference"), |(_, g, _)| {
-                        g.relative_difference.into()
-                    }),
-                    (number("relative_noise"), |(_, g, _)| {
-                        g.relative_noise.into()
-                    }),
-                    (number("largest_z"), |(_, g, _)| g.largest_z.into()),
-                    (number("scale"), |(a, ..)| a.scale.into()),
-                    (number("method"), |(.., q)| Cell::name(&q.method)),
-                    (number("noise"), |(.., q)| q.noise.into()),
-                    (estimate("mtf_raw"), |(.., q)| Cell::spread(q.mtf_raw)),
-                    (estimate("correlation"), |(.., q)| {
-                        Cell::spread(q.correlation)
-                    }),
-                    (estimate("rmse"), |(.., q)| Cell::spread(q.rmse)),
-                    (number("failed"), |(.., q)| q.failed.into()),
+                    number("assumed").of(|(a, ..)| (&a.name).into()),
+                    number("agrees").of(|(_, g, _)| g.agrees.into()),
+                    number("relative_difference").of(|(_, g, _)| g.relative_difference.into()),
+                    number("relative_noise").of(|(_, g, _)| g.relative_noise.into()),
+                    number("largest_z").of(|(_, g, _)| g.largest_z.into()),
+                    number("scale").of(|(a, ..)| a.scale.into()),
+                    number("method").of(|(.., q)| Cell::name(&q.method)),
+                    number("noise").of(|(.., q)| q.noise.into()),
+                    estimate("mtf_raw").of(|(.., q)| Cell::spread(q.mtf_raw)),
+                    estimate("correlation").of(|(.., q)| Cell::spread(q.correlation)),
+                    estimate("rmse").of(|(.., q)| Cell::spread(q.rmse)),
+                    number("failed").of(|(.., q)| q.failed.into()),
                 ],
             )
         }
@@ -188,14 +182,8 @@ impl BrdfStudy {
                 points.sort_by(|a, b| a[0].total_cmp(&b[0]));
                 Curve::new(format!("{} ({})", a.name, verdict(a)), Mark::Line, points)
             };
-            Plot {
-                title: String::new(),
-                axes: [
-                    Axis::decades("relative noise of each entry of Φcam"),
-                    upwards,
-                ],
-                curves: self.rows().map(curve).collect(),
-            }
+            let across = Axis::decades("relative noise of each entry of Φcam");
+            Plot::new("", [across, upwards], self.rows().map(curve).collect())
         };
         let mtf = Axis::linear("raw MTF of the recovery", [-0.2, 1.0]);
         Figure {

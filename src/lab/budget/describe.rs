@@ -109,22 +109,14 @@ impl ErrorBudget {
             let points = vec![[self.signal, 0.0], [self.signal, shown().count() as f64]];
             curves.push(Curve::new("the object's signal", Mark::Level, points));
         }
-        Figure {
-            file: "budget.svg".to_owned(),
-            title: format!("What the matrix model leaves out: {}", self.scene),
-            plots: vec![Plot {
-                title: String::new(),
-                axes: [
-                    Axis::decades("‖term‖ / ‖Φcam‖ over all pixels and spots"),
-                    Axis {
-                        title: String::new(),
-                        spacing: Spacing::Categories(shown().map(name).collect()),
-                    },
-                ],
-                curves,
-            }],
-            ..Figure::default()
-        }
+        let across = Axis::decades("‖term‖ / ‖Φcam‖ over all pixels and spots");
+        let upwards = Axis {
+            title: String::new(),
+            spacing: Spacing::Categories(shown().map(name).collect()),
+        };
+        let title = format!("What the matrix model leaves out: {}", self.scene);
+        let plot = Plot::new("", [across, upwards], curves);
+        Figure::new("budget.svg", title, vec![plot])
     }
 }
 

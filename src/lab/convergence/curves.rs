@@ -185,14 +185,9 @@ impl Describe for Convergence {
             let points = c.steps.iter().map(|s| [s.samples as f64, s.error]);
             finding::Curve::new(name, Mark::Line, points.collect())
         };
-        let plot = Plot {
-            title: String::new(),
-            axes: [
-                Axis::decades("paths per pixel (shared) or per pixel and spot (independent)"),
-                Axis::decades("‖Φ̂ − Φ‖ / ‖Φ‖"),
-            ],
-            curves: self.curves.iter().map(curve).collect(),
-        };
+        let across = "paths per pixel (shared) or per pixel and spot (independent)";
+        let axes = [across, "‖Φ̂ − Φ‖ / ‖Φ‖"].map(Axis::decades);
+        let plot = Plot::new("", axes, self.curves.iter().map(curve).collect());
         Finding {
             sentence: self.sentence(),
             notes: vec![format!(
@@ -200,12 +195,7 @@ impl Describe for Convergence {
                 figure(self.quadrature_bound, 2)
             )],
             tables: vec![slopes, steps],
-            figures: vec![Figure {
-                file: "convergence.svg".to_owned(),
-                title: title.clone(),
-                plots: vec![plot],
-                ..Figure::default()
-            }],
+            figures: vec![Figure::new("convergence.svg", &title, vec![plot])],
             title,
             ..Finding::default()
         }

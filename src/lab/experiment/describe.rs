@@ -203,14 +203,10 @@ fn plots(settings: &[Setting], title: &str, x: Varied) -> Vec<Plot> {
             let points = own.iter().filter_map(point).collect();
             Curve::new(&own[0].readings[i].analysis, Mark::Line, points)
         };
-        Plot {
-            title: format!("{} glare", own[0].spread),
-            axes: [
-                Axis::decades(title),
-                Axis::linear("normalized modulation", [-0.4, 1.0]),
-            ],
-            curves: (0..own[0].readings.len()).map(curve).collect(),
-        }
+        let upwards = Axis::linear("normalized modulation", [-0.4, 1.0]);
+        let curves = (0..own[0].readings.len()).map(curve).collect();
+        let glare = format!("{} glare", own[0].spread);
+        Plot::new(glare, [Axis::decades(title), upwards], curves)
     };
     Setting::by_spread(settings).map(of).collect()
 }
@@ -246,24 +242,22 @@ impl Experiment {
             ..Table::of(
                 readings,
                 [
-                    (column("sweep"), |(sweep, ..)| Cell::name(sweep)),
-                    (column("spread"), |(_, s, _)| Cell::name(&s.spread)),
-                    (column("glare"), |(_, s, _)| s.glare.into()),
-                    (column("fraction"), |(_, s, _)| s.fraction.into()),
-                    (column("exposure_s"), |(_, s, _)| s.exposure.into()),
-                    (column("electrons"), |(_, s, _)| s.electrons.into()),
-                    (column("saturated"), |(_, s, _)| s.saturated.into()),
-                    (column("noise"), |(_, s, _)| s.noise.into()),
-                    (column("analysis"), |(.., r)| (&r.analysis).into()),
-                    (column("mtf"), |(.., r)| mean(r.mtf)),
-                    (column("mtf_sd"), |(.., r)| deviation(r.mtf)),
-                    (column("mtf_normalized"), |(.., r)| mean(r.mtf_normalized)),
-                    (column("mtf_normalized_sd"), |(.., r)| {
-                        deviation(r.mtf_normalized)
-                    }),
-                    (column("correlation"), |(.., r)| mean(r.correlation)),
-                    (column("correlation_sd"), |(.., r)| deviation(r.correlation)),
-                    (column("failed"), |(.., r)| r.failed.into()),
+                    column("sweep").of(|(sweep, ..)| Cell::name(sweep)),
+                    column("spread").of(|(_, s, _)| Cell::name(&s.spread)),
+                    column("glare").of(|(_, s, _)| s.glare.into()),
+                    column("fraction").of(|(_, s, _)| s.fraction.into()),
+                    column("exposure_s").of(|(_, s, _)| s.exposure.into()),
+                    column("electrons").of(|(_, s, _)| s.electrons.into()),
+                    column("saturated").of(|(_, s, _)| s.saturated.into()),
+                    column("noise").of(|(_, s, _)| s.noise.into()),
+                    column("analysis").of(|(.., r)| (&r.analysis).into()),
+                    column("mtf").of(|(.., r)| mean(r.mtf)),
+                    column("mtf_sd").of(|(.., r)| deviation(r.mtf)),
+                    column("mtf_normalized").of(|(.., r)| mean(r.mtf_normalized)),
+                    column("mtf_normalized_sd").of(|(.., r)| deviation(r.mtf_normalized)),
+                    column("correlation").of(|(.., r)| mean(r.correlation)),
+                    column("correlation_sd").of(|(.., r)| deviation(r.correlation)),
+                    column("failed").of(|(.., r)| r.failed.into()),
                 ],
             )
         }

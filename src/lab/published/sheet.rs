@@ -27,12 +27,7 @@ pub(super) fn finding(
     plots: Vec<Plot>,
 ) -> Finding {
     let title = title.into();
-    let figure = Figure {
-        file: format!("{item}.svg"),
-        title: format!("{item}: {title}"),
-        plots,
-        ..Figure::default()
-    };
+    let figure = Figure::new(format!("{item}.svg"), format!("{item}: {title}"), plots);
     let place = if table.rows.len() > MOST_ROWS {
         Place::File
     } else {

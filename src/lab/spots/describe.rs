@@ -78,19 +78,9 @@ impl SpotRanks {
                 s.ranks[k]
             })
         }));
-        Figure {
-            file: "spots.svg".to_owned(),
-            title: title.to_owned(),
-            plots: vec![Plot {
-                title: String::new(),
-                axes: [
-                    Axis::decades("spots"),
-                    Axis::linear("rank of Φcam", [0.0, 1.0]),
-                ],
-                curves,
-            }],
-            ..Figure::default()
-        }
+        let upwards = Axis::linear("rank of Φcam", [0.0, 1.0]);
+        let plot = Plot::new("", [Axis::decades("spots"), upwards], curves);
+        Figure::new("spots.svg", title, vec![plot])
     }
 }
 

@@ -175,11 +175,8 @@ impl Tolerance {
                 let points = p.rows.iter().filter_map(|r| Some([r.size, f(r)?]));
                 Curve::new(&p.name, Mark::Line, points.collect())
             };
-            Plot {
-                title: String::new(),
-                axes: [Axis::decades(&size), upwards],
-                curves: self.parameters.iter().map(curve).collect(),
-            }
+            let curves = self.parameters.iter().map(curve).collect();
+            Plot::new("", [Axis::decades(&size), upwards], curves)
         };
         Figure {
             file: "tolerance.svg".to_owned(),
