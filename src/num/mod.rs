@@ -14,7 +14,6 @@ pub mod lattice;
 pub mod linalg;
 #[doc(hidden)]
 pub mod multiprecision;
-#[doc(hidden)]
 pub mod named;
 #[doc(hidden)]
 pub mod poisson;
