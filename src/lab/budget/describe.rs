@@ -74,8 +74,10 @@ impl ErrorBudget {
                 [
                     Column::text("cause", "cause").of(|t| (&t.name).into()),
                     Column::estimate("size", "size", "", 3).of(|t| t.size.into()),
-                    Column::estimate("after the best single scale", "after_scale", "", 3).of(|t| t.after_scale.into()),
-                    Column::number("of the object's signal", "of_signal", "", 3).of(|t| t.of_signal.into()),
+                    Column::estimate("after the best single scale", "after_scale", "", 3)
+                        .of(|t| t.after_scale.into()),
+                    Column::number("of the object's signal", "of_signal", "", 3)
+                        .of(|t| t.of_signal.into()),
                     Column::text("in the sum", "in_sum").of(|t| t.in_sum.into()),
                 ],
             )

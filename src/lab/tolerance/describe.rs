@@ -129,10 +129,14 @@ impl Tolerance {
                 things,
                 [
                     Column::text("what is off", "").of(|(p, ..)| (&p.name).into()),
-                    Column::number("dΦ/Φ a unit", "", "", 2).of(|(_, r, _)| r.map(|r| r.change / r.size).into()),
-                    Column::number("after the best single scale", "", "", 2).of(|(_, r, _)| r.map(|r| r.after_scale / r.size).into()),
-                    Column::number("by derivative", "", "", 2).of(|(p, ..)| p.by_derivative.map(|d| d[0]).into()),
-                    Column::number("by derivative, scaled", "", "", 2).of(|(p, ..)| p.by_derivative.map(|d| d[1]).into()),
+                    Column::number("dΦ/Φ a unit", "", "", 2)
+                        .of(|(_, r, _)| r.map(|r| r.change / r.size).into()),
+                    Column::number("after the best single scale", "", "", 2)
+                        .of(|(_, r, _)| r.map(|r| r.after_scale / r.size).into()),
+                    Column::number("by derivative", "", "", 2)
+                        .of(|(p, ..)| p.by_derivative.map(|d| d[0]).into()),
+                    Column::number("by derivative, scaled", "", "", 2)
+                        .of(|(p, ..)| p.by_derivative.map(|d| d[1]).into()),
                     Column::text("known to at least", "").of(|(p, ..)| {
                         p.needed
                             .map_or("–".to_owned(), |x| format!("{} {}", figure(x, 2), p.unit))
