@@ -14,7 +14,7 @@ fn derivatives(c: &mut Criterion) {
     let scene = Scene::load("bench").expect("a built-in scene");
     for (name, fineness) in [
         ("centres", Fineness::Centres),
-        ("integrated", Fineness::Areas),
+        ("integrated", Fineness::Areas(1)),
     ] {
         let mut group = c.benchmark_group(format!("derivatives, {name}"));
         let model = Differential::new(&scene, None, fineness).expect("a model");

@@ -6,7 +6,8 @@ use super::args::BesideArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_other_shape};
-use super::run_folder::LEFT_OUT;
+use super::recover_memory;
+use super::run_folder::{LEFT_OUT, SATURATED};
 use super::settings::within;
 use crate::folder::Origin;
 use crate::lab::{Certainty, Errors, polynomials};
@@ -261,6 +262,40 @@ pub(super) fn mask(asked: Option<&Path>, phi: &Path) -> Option<PathBuf> {
     let beside = phi.with_file_name(LEFT_OUT);
     let beside = beside.exists().then_some(beside);
     asked.map(Path::to_path_buf).or(beside)
+}
+
+/// Rows of a mask that are read at a time.
+const MASK_ROWS: usize = 256;
+
+/// Refuses photographs of `phicam expose` whose values mean nothing in places, by the mask beside
+/// them: they are too low or too high by an unknown amount, and no standard error says so. `cure`
+/// is what else may be done.
+pub(super) fn refuse_clipped(phi: &Path, scene: &Scene, cure: &str) -> Result<(), Failure> {
+    let mask = phi.with_file_name(SATURATED);
+    if !mask.exists() {
+        return Ok(());
+    }
+    let mut rows = recover_memory::open(&mask, scene)?;
+    let (pixels, spots) = rows.shape();
+    let mut marked = 0;
+    for first in (0..pixels).step_by(MASK_ROWS) {
+        let part = rows.read(first, MASK_ROWS)?;
+        marked += part.iter().filter(|x| x.abs() >= 1.0).count();
+    }
+    if marked == 0 {
+        return Ok(());
+    }
+    let cause = format!(
+        "{marked} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
+        pixels * spots,
+        phi.display(),
+        mask.display()
+    );
+    let cure = format!(
+        "expose for a shorter time or in --brackets; --left-out {} leaves them out{cure}",
+        mask.display()
+    );
+    Err(Failure::new(cause, cure))
 }
 
 /// Entries that do not count, by [`mask`].

@@ -1,7 +1,7 @@
 //! `phicam calibrate`: the geometry, from the photographs.
 
 use super::args::CalibrateArgs;
-use super::beside::frame_gain;
+use super::beside::{frame_gain, refuse_clipped};
 use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
@@ -40,6 +40,9 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         }
         (phi, _) => {
             let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
+            if args.phi.is_some() && left_out.is_none() {
+                refuse_clipped(&phi, &scene, "")?;
+            }
             let beside = [args.stderr.as_deref(), left_out];
             of_files(&phi, beside, &scene, (polynomial, args.replicates))?
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::ValidateArgs;
-use super::beside::{Beside, PhotographSize};
+use super::beside::{Beside, PhotographSize, refuse_clipped};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_photographs, read_run, read_stderr};
@@ -84,6 +84,9 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 let cause = "nothing says of which scene the matrix is";
                 Failure::usage(cause, "give the folder of a run, or --against SCENE")
             })?;
+            if args.left_out.is_none() {
+                refuse_clipped(phi, &scene, "")?;
+            }
             let left_out = left_out(args, None, &scene)?;
             Ok(Given {
                 phi: read_photographs(phi, left_out.as_ref(), &scene)?,

@@ -6,12 +6,12 @@
 //!
 //! > cov θ = (F + Λ)⁻¹,   or where more than noise is left (F + Λ)⁻¹ M (F + Λ)⁻¹,   M = Σ_c u_c u_cᵀ
 //!
-//! if that is larger: u_c is what frame c says where only the others are fitted ([`left_out`]), or
-//! what one of 4 × 4 blocks of pixels adds to the slope, so that what the model lacks counts once a
-//! frame or block (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others
-//! following, falls by ½ farther out, that is the error. The picture's own covariance is P + (RX)
-//! cov θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
-//! where the photographs ask for it.
+//! if that is larger: u_c is what frame c, or one of 4 × 4 blocks of pixels, says where only the
+//! others are fitted ([`left_out`]), so that what the model lacks counts once a frame or block
+//! (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others following, falls by
+//! ½ farther out, that is the error. The picture's own covariance is P + (RX) cov θ (RX)ᵀ. What a
+//! picture of twice as many elements along each side would move is an error too where the
+//! photographs ask for it, and so is what the next rule of integration would ([`rule`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -51,6 +51,7 @@ mod left_out;
 mod picture;
 mod posterior;
 mod profile;
+mod rule;
 #[cfg(test)]
 mod tests;
 
@@ -167,12 +168,12 @@ impl CalibrationPlan {
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, Occlusion::Ignored)?;
         let fineness = match self.integration {
             Integration::Centres => Fineness::Centres,
-            Integration::Quadrature => Fineness::Areas,
+            Integration::Quadrature => Fineness::Areas(1),
         };
         let pictures = picture::priors(&model.places, self.is_scale_free)?;
         let common = (self.background).then(|| Common::new(photographs, self.error_field));
         let common = common.transpose()?;
-        let problem = Problem {
+        let mut problem = Problem {
             geometry: Geometry {
                 scene,
                 parameters: &parameters,
@@ -212,15 +213,38 @@ impl CalibrationPlan {
         (control.progress)(1);
         let mut ends: Vec<End> = Vec::new();
         for k in 0..self.starts.max(1) {
-            let (state, stages) = problem.descend(&self.start(k, &problem, &sizes), control)?;
-            ends.push(if self.error_field {
-                problem.with_shared_errors((state, stages), control)?
-            } else {
-                End::new(&problem, state, stages)
-            });
+            let start = self.start(k, &problem, &sizes);
+            ends.push(self.end(&problem, &start, problem.first, control)?);
             (control.progress)(1);
         }
+        ends.sort_by(|a, b| a.total.total_cmp(&b.total));
+        while let Some(finer) = problem.next_rule(&ends[0])? {
+            problem.geometry.fineness = finer;
+            for end in &mut ends {
+                let mut stages = std::mem::take(&mut end.stages);
+                *end = self.end(&problem, &end.state.values, end.noise(), control)?;
+                stages.append(&mut end.stages);
+                end.stages = stages;
+            }
+            ends.sort_by(|a, b| a.total.total_cmp(&b.total));
+        }
         self.finish(&problem, (&model, told, untold), ends, control)
+    }
+
+    /// From `start` and a noise `first` times the stated one to an end.
+    fn end(
+        &self,
+        problem: &Problem<'_>,
+        start: &[f64],
+        first: f64,
+        control: Control<'_>,
+    ) -> Result<End, LabError> {
+        let (state, stages) = problem.descend(start, first, control)?;
+        if self.error_field {
+            problem.with_shared_errors((state, stages), control)
+        } else {
+            Ok(End::new(problem, state, stages))
+        }
     }
 
     fn parameters(&self, scene: &Scene) -> Result<(Vec<Parameter>, Vec<Option<f64>>), LabError> {

@@ -1,5 +1,6 @@
 //! What is known of standard errors.
 
+use crate::num::digits::figure;
 use crate::num::named::named;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::transport::{Estimator, Plan};
@@ -67,6 +68,15 @@ pub(super) fn hang_together(which: &str, what: &str, cure: &str) -> String {
     )
 }
 
+/// What errors were pooled from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PooledFrom {
+    /// Replicates of each.
+    pub replicates: u32,
+    /// What is expected of the square of a deviate over them, and of its fourth power.
+    pub squares: [f64; 2],
+}
+
 /// What is known of standard errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certainty {
@@ -77,9 +87,9 @@ pub struct Certainty {
     pub replicates: Option<u32>,
     /// Paths of each entry, of traced light.
     pub paths: Option<u64>,
-    /// Replicates from which each was estimated before those of pixels and spots were pooled; none
-    /// where they were not.
-    pub pooled_from: Option<u32>,
+    /// From what each was estimated before those of pixels and spots were pooled; none where they
+    /// were not.
+    pub pooled_from: Option<PooledFrom>,
     /// Whether they follow from the noisy entries, and what light to expect in these is not known.
     pub follows_entries: bool,
 }
@@ -139,7 +149,7 @@ impl Certainty {
     ///
     /// > Var Σz²/N = 2/N (1 + 1/ν)
     pub(super) fn of_chi2(self, squares: f64) -> f64 {
-        match self.pooled_from.map(freedom) {
+        match self.pooled_from.map(|own| freedom(own.replicates)) {
             Some(own) => squares * own / (own + 1.0),
             None => squares,
         }
@@ -147,16 +157,41 @@ impl Certainty {
 
     /// Probability of as large a sum χ² of squared deviates over standard errors by noise alone. Of
     /// errors of ν > 4 degrees of freedom each square is that of Student's t, of mean ν/(ν − 2) and
-    /// variance 2 (ν − 1)/(ν − 4) times the square of that: χ² is compared as one of that mean and
-    /// variance.
+    /// variance 2 (ν − 1)/(ν − 4) times the square of that, of pooled ones that of
+    /// [`PooledFrom::squares`]: χ² is compared as one of that mean and variance.
     pub(super) fn by_noise(self, chi2: f64, dof: f64) -> f64 {
-        let (all, nu) = (self.of_chi2(dof), self.freedom());
-        let [mean, fewer] = match self.replicates {
-            Some(_) if nu > 4.0 => [nu / (nu - 2.0), all * (nu - 4.0) / (nu - 1.0)],
-            _ => [1.0, all],
+        let nu = self.freedom();
+        let [mean, fewer] = match (self.pooled_from, self.replicates) {
+            (Some(own), _) => {
+                let [square, fourth] = own.squares;
+                let each = 0.5 * (fourth / (square * square) - 1.0);
+                [square, dof / (each + 1.0 / freedom(own.replicates))]
+            }
+            (None, Some(_)) if nu > 4.0 => [nu / (nu - 2.0), dof * (nu - 4.0) / (nu - 1.0)],
+            (None, _) => [1.0, dof],
         };
         chi_square_sf(chi2 / dof / mean * fewer, fewer)
     }
+}
+
+/// Standard errors 1/√n beyond which a correlation of what is left of neighbours is no chance.
+const BEYOND_CHANCE: f64 = 6.0;
+
+/// The correlation of what is left of neighbouring pixels, over `entries` entries of independent
+/// noise, where chance leaves none so large; `beside` is Σ z z′ over neighbours and `squares` Σ z².
+pub(super) fn correlated(beside: f64, squares: f64, entries: f64) -> Option<f64> {
+    let correlation = beside / squares;
+    (correlation * entries.sqrt() > BEYOND_CHANCE).then_some(correlation)
+}
+
+/// What is said of it, in what is found of `what`.
+pub(super) fn neighbours_share(correlation: f64, what: &str) -> String {
+    format!(
+        "what is left of neighbouring pixels HANGS TOGETHER (correlation {}): they share noise, as where \
+         photographs were resampled or blurred, or the model lacks something smooth. Bin the pixels until \
+         it is gone, or state no noise and take --error-field; {what}",
+        figure(correlation, 2)
+    )
 }
 
 /// A χ²/dof below this, and as seldom by chance, is not that of independent noise.
@@ -189,7 +224,10 @@ mod tests {
     fn squares_over_a_pooled_variance_follow_fishers_law() {
         let pooled = Certainty {
             replicates: Some(500),
-            pooled_from: Some(3),
+            pooled_from: Some(PooledFrom {
+                replicates: 3,
+                squares: [1.0, 3.0],
+            }),
             ..Certainty::STATED
         };
         let (entries, nu) = (400.0, 2.0);

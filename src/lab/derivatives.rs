@@ -11,7 +11,8 @@ use crate::matrix::Matrix;
 use crate::model::{Kernel, Nodes, integrated};
 use crate::scene::Scene;
 
-/// The scale of all light, the albedos, and everything that the tolerance study misplaces.
+/// The scale of all light, light beside it, the albedos, and everything that the tolerance study
+/// misplaces.
 pub(super) struct SceneDerivatives<'a> {
     scene: &'a Scene,
     kernel: Kernel,
@@ -33,6 +34,8 @@ pub(super) struct SceneDerivatives<'a> {
 enum Kind {
     /// Φ itself.
     Scale,
+    /// The same light in every entry: dark current, stray light.
+    Offset,
     /// The albedo of a surface.
     Albedo(usize),
     Misplaced(&'static Misplaced),
@@ -88,6 +91,8 @@ impl<'a> SceneDerivatives<'a> {
             here: OnceLock::new(),
             parameters: vec![scale],
         };
+        let offset = "offset of all entries".to_owned();
+        found.add(Kind::Offset, offset, "% of the mean", None);
         let reflecting = scene.relays().chain(scene.hidden());
         for (index, surface) in reflecting.filter(|(_, s)| s.is_lambertian()) {
             let name = albedo_of(&surface.name);
@@ -110,7 +115,7 @@ impl<'a> SceneDerivatives<'a> {
 
     fn add(&mut self, kind: Kind, name: String, unit: &str, each_spot: Option<&str>) {
         let reach = match (kind, unit) {
-            (Kind::Albedo(_), _) => None,
+            (Kind::Albedo(_) | Kind::Offset, _) => None,
             (_, "deg") => Some(90.0),
             (_, "%") => Some(100.0),
             _ => Some(nearest_and_middle(self.scene)[1]),
@@ -146,8 +151,7 @@ impl<'a> SceneDerivatives<'a> {
     /// scene allows no such deviation.
     pub(super) fn moved(&self, index: usize, size: f64) -> Option<[Matrix; 2]> {
         let kind = self.kinds[index];
-        if let Kind::Scale = kind {
-            let slope = self.phi * 0.01;
+        if let Some(slope) = self.straight(kind) {
             return Some([&slope * size, slope]);
         }
         if self.shaded.is_known() {
@@ -160,10 +164,20 @@ impl<'a> SceneDerivatives<'a> {
 
     fn difference(&self, kind: Kind) -> Option<Matrix> {
         match kind {
-            Kind::Scale => Some(self.phi * 0.01),
+            Kind::Scale | Kind::Offset => self.straight(kind),
             // What it does to shadows is not known.
             Kind::Misplaced(_) if self.shaded.is_known() => None,
             _ => Some(self.seen(self.slope(kind, 0.0)?)),
+        }
+    }
+
+    /// ∂Φ/∂θ of what no geometry changes; none of others.
+    fn straight(&self, kind: Kind) -> Option<Matrix> {
+        let (rows, columns) = self.phi.shape();
+        match kind {
+            Kind::Scale => Some(self.phi * 0.01),
+            Kind::Offset => Some(Matrix::from_element(rows, columns, 0.01 * self.phi.mean())),
+            Kind::Albedo(_) | Kind::Misplaced(_) | Kind::Shift => None,
         }
     }
 
@@ -189,7 +203,7 @@ impl<'a> SceneDerivatives<'a> {
             }
             Kind::Misplaced(_) if size == 0.0 => self.integrated(self.scene),
             Kind::Misplaced(what) => self.integrated(&what.apply(self.scene, size)?),
-            Kind::Scale | Kind::Shift => None,
+            Kind::Scale | Kind::Offset | Kind::Shift => None,
         }
     }
 
@@ -201,7 +215,7 @@ impl<'a> SceneDerivatives<'a> {
                 Size::Angle => (self.step / lever(self.scene)).to_degrees(),
                 Size::Length | Size::Random | Size::Positive => self.step,
             },
-            Kind::Scale | Kind::Albedo(_) | Kind::Shift => PERCENT,
+            Kind::Scale | Kind::Offset | Kind::Albedo(_) | Kind::Shift => PERCENT,
         };
         let at = |steps: f64| self.deviating(kind, size + steps * step);
         let is_positive = matches!(kind, Kind::Misplaced(what) if what.size == Size::Positive);

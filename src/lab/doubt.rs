@@ -12,8 +12,8 @@ use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
 use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
-    DETERMINED, HALF, alike_untold, by_entries, few_replicates, integrated, overstated, shared,
-    undetermined, unseen,
+    DETERMINED, HALF, alike_untold, between_neighbours, by_entries, few_replicates, integrated,
+    overstated, shared, undetermined, unseen,
 };
 use misfit::{misfit, outlier};
 
@@ -39,6 +39,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         contested(found.method, judged),
         unjudged(found, judged),
         shared(judged),
+        between_neighbours(judged),
         few_replicates(found, judged),
         by_entries(judged),
         integrated(found, judged),

@@ -73,6 +73,9 @@ pub struct Fit {
     /// pixels and spots; absent where none were.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pooled: Option<u32>,
+    /// Correlation of what is left of neighbouring pixels, where it is more than chance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub neighbours: Option<f64>,
 }
 
 impl Fit {

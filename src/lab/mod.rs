@@ -227,7 +227,7 @@ pub use calibrate::{
     Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free, Identified, Profile,
     Stage, Starts,
 };
-pub use certainty::{Certainty, Errors};
+pub use certainty::{Certainty, Errors, PooledFrom};
 pub use chosen::{Beside, Chosen, Ended};
 pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};

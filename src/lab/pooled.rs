@@ -15,8 +15,9 @@
 //! After Smyth (2004), Linear models and empirical Bayes methods, Statistical Applications in
 //! Genetics and Molecular Biology 3(1), with the product in place of one variance for all.
 
-use super::certainty::{Certainty, Errors, freedom};
+use super::certainty::{Certainty, Errors, PooledFrom, freedom};
 use crate::matrix::Matrix;
+use crate::num::quadrature::Rule;
 use crate::num::separable::Separable;
 use crate::num::statistics::{freedom_of_log_variance, pentagamma, trigamma};
 
@@ -27,6 +28,9 @@ pub(super) const ENOUGH_REPLICATES: u32 = 32;
 /// Variances whose logarithms scatter less than chance lets them, by so many standard errors, were
 /// not estimated entry by entry: that all are alike says nothing of how well they are known.
 const LESS_THAN_CHANCE: f64 = 5.0;
+
+/// Nodes of the integrals over u.
+const NODES: usize = 16;
 
 /// Standard errors, W, and what is known of them.
 #[derive(Debug)]
@@ -63,11 +67,59 @@ impl Pooled {
             stderr: pooled,
             certainty: Certainty {
                 replicates: Some((prior + nu + 1.0).min(f64::from(u32::MAX)) as u32),
-                pooled_from: Some(replicates),
+                pooled_from: Some(PooledFrom {
+                    replicates,
+                    squares: squares(&product, &variance, &at, (prior, nu)),
+                }),
                 ..certainty
             },
         })
     }
+}
+
+/// E z² and E z⁴ of deviates z over pooled errors s̃ of d = `prior` and ν degrees of freedom, the
+/// noise normal, whatever the law of σ²: of s² = σ² χ²\[ν\]/ν and any f
+///
+/// > E σ² f(s²) = ν/2 E s² ∫₀¹ u^(ν/2−1) f(u s²) du
+/// > E σ⁴ f(s²) = (ν/2)² E s⁴ ∫₀¹ u^(ν/2−1) (1 − u) f(u s²) du
+///
+/// (the identity of Stein for gamma laws, by parts). The product follows each s² as one of n in its
+/// row and column. How well d is known does not matter: it is small where little tells it.
+fn squares(
+    product: &Separable,
+    variance: &Matrix,
+    at: &[usize],
+    (prior, nu): (f64, f64),
+) -> [f64; 2] {
+    let (m, n) = variance.shape();
+    let (mut rows, mut columns) = (vec![0.0; m], vec![0.0; n]);
+    for at in at {
+        rows[at % m] += 1.0;
+        columns[at / m] += 1.0;
+    }
+    // u = y², so that no power of it is below 0.
+    let rule = Rule::gauss_legendre(NODES);
+    let nodes = rule.on(0.0, 1.0);
+    let nodes = nodes.map(|(y, w)| (y * y, 2.0 * w * libm::pow(y, nu - 1.0)));
+    let nodes: Vec<(f64, f64)> = nodes.collect();
+    let of = |at: &usize| {
+        let (own, product) = (variance[*at], product.at(*at));
+        let [in_row, in_column] =
+            [rows[at % m], columns[at / m]].map(|count| own / product / count);
+        nodes.iter().fold([0.0; 2], |[first, second], (u, w)| {
+            let less = u - 1.0;
+            let there = product * (1.0 + less * in_row) * (1.0 + less * in_column);
+            let ratio = own * (prior + nu) / (prior * there + nu * u * own);
+            [first + w * ratio, second - w * less * ratio * ratio]
+        })
+    };
+    let half = 0.5 * nu;
+    let sums = at
+        .iter()
+        .map(of)
+        .fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    let count = at.len() as f64;
+    [half * sums[0] / count, 3.0 * half * half * sums[1] / count]
 }
 
 /// The degrees of freedom as from which `product` tells a variance: what its logarithm scatters

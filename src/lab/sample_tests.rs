@@ -70,6 +70,7 @@ fn fit(chi2_per_dof: f64) -> Fit {
         within_integration: None,
         outlier: None,
         pooled: None,
+        neighbours: None,
     }
 }
 

@@ -24,21 +24,18 @@ use crate::scene::{Scene, Surface, Velocity};
 pub enum Fineness {
     /// Elements, footprints and spots at their centres.
     Centres,
-    /// Integrated over them: an element by its four quarters and its middle, of which the error
-    /// falls as the fourth power of its size.
-    Areas,
-    /// The same by sixteen parts and four, and a finer rule on footprints and spots: what that
-    /// changes is what [`Self::Areas`] leaves out.
-    Finer,
+    /// Integrated over them: an element by its 4ᵏ parts and the 4ᵏ⁻¹ twice as long, of which the
+    /// error falls as the fourth power of their size, footprints and spots by a rule of level k,
+    /// at least 1. What the next k changes is what this leaves out.
+    Areas(u32),
 }
 
 impl Fineness {
-    /// The next one, if there is one.
-    pub fn next(self) -> Option<Self> {
+    /// The next one.
+    pub fn next(self) -> Self {
         match self {
-            Self::Centres => Some(Self::Areas),
-            Self::Areas => Some(Self::Finer),
-            Self::Finer => None,
+            Self::Centres => Self::Areas(1),
+            Self::Areas(k) => Self::Areas(k + 1),
         }
     }
 
@@ -46,8 +43,7 @@ impl Fineness {
     fn rule(self) -> Option<(u32, usize)> {
         match self {
             Self::Centres => None,
-            Self::Areas => Some((1, 1)),
-            Self::Finer => Some((2, 2)),
+            Self::Areas(k) => Some((k.max(1), k.max(1) as usize)),
         }
     }
 }

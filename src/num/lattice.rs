@@ -202,7 +202,10 @@ impl Lattice {
                 next.select_nth_unstable_by(keep, before);
                 next.truncate(keep);
             }
-            next.sort_unstable_by(before);
+            // In between the order does not matter.
+            if k == 0 {
+                next.sort_unstable_by(before);
+            }
             let column = &self.t.column(k).data.into_slice()[..k];
             let mut rest = Vec::with_capacity(next.len() * k);
             for (_, parent, z) in &next {

@@ -247,6 +247,13 @@ fn clipped_photographs_are_not_recovered_from_in_silence() {
         "--keep-clipped",
     ];
     workspace.refuses(line, &words);
+    let files = "--phi done/exposed/phi.npy --stderr done/exposed/phi.stderr.npy";
+    for other in ["validate done", "calibrate done --free hinge.angle"] {
+        workspace.refuses(
+            &format!("{other} {files}"),
+            &["48 of 48 entries", "saturated.npy", "--left-out"],
+        );
+    }
     let _ = workspace.phicam(&format!("{line} --keep-clipped")).exits(0);
     workspace.refuses("recover done --keep-clipped", &["--phi"]);
     let _ = workspace

@@ -4,21 +4,21 @@ use std::path::{Path, PathBuf};
 
 use super::is_own;
 use crate::cli::args::RecoverArgs;
-use crate::cli::beside::{Beside, PhotographSize, left_out, mask, relative_errors, warn_of_exact};
+use crate::cli::beside::{
+    Beside, PhotographSize, left_out, mask, refuse_clipped, relative_errors, warn_of_exact,
+};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_photographs, read_stderr};
 use crate::cli::recover_memory::{self, Errors, Strips};
 use crate::cli::recover_options::uncertainty;
 use crate::cli::recovered::recovering;
-use crate::cli::run_folder::{PHI, SATURATED, STDERR};
+use crate::cli::run_folder::{PHI, STDERR};
+use crate::folder::Record;
 use crate::lab::{Attempt, Certainty, Noise, inverted, recover_with_picards};
 use crate::model::{Effort, MatrixModel};
 use crate::recovery::{Method, Options, Picard};
 use crate::scene::Scene;
-
-/// Pixels of a mask that are looked at together.
-const MASK_ROWS: usize = 256;
 
 /// A recovery that was asked for.
 pub(super) struct RecoveryRequest<'a> {
@@ -134,7 +134,8 @@ impl RecoveryRequest<'_> {
             (Some(file), None) => Errors::File(file.clone()),
             (None, None) if is_own(self.args.phi.as_deref(), self.dir, PHI) => {
                 let file = self.dir.join(STDERR);
-                if self.is_imported && !file.exists() {
+                let is_run = self.dir.join(Record::FILE).exists();
+                if (self.is_imported || !is_run) && !file.exists() {
                     return Errors::Unknown;
                 }
                 Errors::File(file)
@@ -143,35 +144,13 @@ impl RecoveryRequest<'_> {
         }
     }
 
-    /// Refuses photographs of `phicam expose` whose values mean nothing in places: they are too low
-    /// or too high by an unknown amount, and no standard error says so.
+    /// Refuses photographs of `phicam expose` whose values mean nothing in places.
     fn refuse_clipped(&self) -> Result<(), Failure> {
-        let mask = self.phi.with_file_name(SATURATED);
         let asked = self.args.keep_clipped || self.args.left_out.is_some();
-        if self.args.phi.is_none() || asked || !mask.exists() {
+        if self.args.phi.is_none() || asked {
             return Ok(());
         }
-        let mut rows = recover_memory::open(&mask, self.scene)?;
-        let (pixels, spots) = rows.shape();
-        let mut marked = 0;
-        for first in (0..pixels).step_by(MASK_ROWS) {
-            let part = rows.read(first, MASK_ROWS)?;
-            marked += part.iter().filter(|x| x.abs() >= 1.0).count();
-        }
-        if marked == 0 {
-            return Ok(());
-        }
-        Err(Failure::new(
-            format!(
-                "{marked} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
-                pixels * spots,
-                self.phi.display(),
-                mask.display()
-            ),
-            format!(
-                "expose for a shorter time or in --brackets; --left-out {} leaves them out of the joint methods; --keep-clipped takes them as they are",
-                mask.display()
-            ),
-        ))
+        let cure = " of the joint methods; --keep-clipped takes them as they are";
+        refuse_clipped(&self.phi, self.scene, cure)
     }
 }

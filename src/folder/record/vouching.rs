@@ -164,6 +164,6 @@ fn changed(path: &Path, what: &str) -> FolderError {
     );
     FolderError::new(
         cause,
-        "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
+        "restore it, or give data of your own (--phi, --left-out); the same render into the same folder makes it again",
     )
 }

@@ -70,6 +70,9 @@ pub struct Calibration {
     /// Whether the stated noise follows from the noisy entries, and what light to expect in these
     /// is not known.
     pub follows_entries: bool,
+    /// Correlation of what is left of neighbouring pixels, where the noise is stated and it is more
+    /// than chance: then errors are those by frames and blocks too.
+    pub neighbours: Option<f64>,
     /// Estimated noise over the stated one (1 where it is stated), or W.
     pub noise: f64,
     /// χ² over degrees of freedom at that noise.

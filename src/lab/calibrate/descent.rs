@@ -17,7 +17,6 @@ use super::posterior::{Seen, Slope, Value};
 use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::model::Fineness;
 use crate::num::linalg::Cholesky;
 use crate::transport::Control;
 
@@ -92,7 +91,6 @@ impl<'a> Problem<'a> {
             photographs: self.photographs,
             common: self.common,
             factor,
-            columns: self.geometry.scene.camera.columns,
             cosines: self.cosines,
         }
     }
@@ -185,18 +183,15 @@ impl<'a> Problem<'a> {
         state.value.cost + self.penalty(&state.values) + noise
     }
 
-    /// Down from `start` through all noises.
+    /// Down from `start` through all noises from the one that is `first` times the stated one.
     pub(super) fn descend(
         &self,
         start: &[f64],
+        first: f64,
         control: Control<'_>,
     ) -> Result<(State, Vec<Stage>), LabError> {
         let is_known = self.photographs.stderr.is_some();
-        let mut factor = if is_known {
-            self.first.max(1.0)
-        } else {
-            self.first
-        };
+        let mut factor = if is_known { first.max(1.0) } else { first };
         let mut stages = Vec::new();
         let mut values = start.to_vec();
         loop {
@@ -268,36 +263,6 @@ impl<'a> Problem<'a> {
             }
         }
         Ok((state, MOST_STEPS))
-    }
-
-    /// How far a finer rule of integration moves the unknowns, by one Newton step, and χ² there;
-    /// none where there is no finer one.
-    pub(super) fn finer(
-        &self,
-        best: &State,
-        covariance: &Matrix,
-    ) -> Result<Option<(DVector<f64>, f64)>, LabError> {
-        let next = if self.geometry.is_obstructed() {
-            Some(Fineness::Finer)
-        } else {
-            self.geometry.fineness.next()
-        };
-        let Some(fineness) = next else {
-            return Ok(None);
-        };
-        let finer = Problem {
-            geometry: Geometry {
-                fineness,
-                ..self.geometry
-            },
-            priors: self.priors.clone(),
-            ..*self
-        };
-        let state = finer.state(&best.values, best.factor, Some(&best.prior))?;
-        let slopes = self.whole_slope(best) - self.whole_slope(&state);
-        let moved = covariance * &slopes;
-        let less = moved.dot(&slopes);
-        Ok(Some((moved, (state.value.chi2 - less).max(0.0))))
     }
 
     /// Slope of the cost with the prior of the unknowns.

@@ -5,8 +5,7 @@ mod picture;
 mod tables;
 
 use super::{Calibrated, Calibration};
-use crate::lab::certainty::FOLLOWS_ENTRIES;
-use crate::lab::certainty::{fits_better, hang_together};
+use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, hang_together, neighbours_share};
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::lab::which_errors::which_errors;
@@ -140,7 +139,10 @@ impl Calibration {
                 if fits_better(self.misfit, p) {
                     " That is CLOSER than the standard errors allow: they are too large, or entries \
                      share them, and the errors of the geometry are not those of the noise."
-                } else if self.asks_for_elements() || self.shared.is_some() {
+                } else if self.asks_for_elements()
+                    || self.shared.is_some()
+                    || self.neighbours.is_some()
+                {
                     ""
                 } else {
                     " The errors are those of the noise."
@@ -212,6 +214,9 @@ impl Calibration {
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![self.fit()];
         notes.extend(self.hang_together());
+        let errors = "errors of the geometry are those by frames and blocks of pixels too, where they are larger";
+        let neighbours = self.neighbours.filter(|_| !self.is_refuted());
+        notes.extend(neighbours.map(|r| format!("Beware: {}.", neighbours_share(r, errors))));
         notes.extend(self.few_replicates());
         if self.follows_entries {
             notes.push(format!("Beware: {FOLLOWS_ENTRIES}."));

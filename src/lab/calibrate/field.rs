@@ -105,6 +105,12 @@ impl End {
         }
     }
 
+    /// Noise of a pixel over the stated one.
+    pub(super) fn noise(&self) -> f64 {
+        let field = self.field.as_ref().map(|field| field.errors.pixel);
+        field.unwrap_or(self.state.factor)
+    }
+
     /// ‖y − Aρ̂‖/‖y‖ at the weights of `problem`, in which errors are of single pixels.
     pub(super) fn left_over(&self, problem: &Problem<'_>) -> Result<f64, LabError> {
         let State { values, value, .. } = &self.state;

@@ -2,10 +2,12 @@
 
 use super::descent::State;
 use super::field::End;
+use super::left_out::Group;
 use super::{
     Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
     Starts, profile,
 };
+use crate::lab::certainty::{Errors, correlated};
 use crate::lab::error::LabError;
 use crate::lab::located::Grid;
 use crate::lab::validation::Integration;
@@ -24,10 +26,9 @@ impl CalibrationPlan {
         &self,
         problem: &Problem<'_>,
         (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
-        mut ends: Vec<End>,
+        ends: Vec<End>,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
-        ends.sort_by(|a, b| a.total.total_cmp(&b.total));
         let alone = ends.iter().map(|end| end.without);
         let alone = alone.fold(f64::INFINITY, f64::min);
         let End {
@@ -49,17 +50,21 @@ impl CalibrationPlan {
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
         let p = is_noise_known.then(|| known.by_noise(best.value.chi2, dof));
-        let more_than_noise = p.is_none_or(|p| p < LEVEL);
+        let neighbours = problem.neighbours(best)?;
+        let more_than_noise = p.is_none_or(|p| p < LEVEL) || neighbours.is_some();
         let robust = |scores: &Matrix| {
             let moved = &covariance * scores;
             &moved * moved.transpose()
         };
         let enough_frames = problem.photographs.phi.ncols() > 2;
-        let by_frames = (more_than_noise && enough_frames)
-            .then(|| problem.by_frames(best, &information))
-            .transpose()?;
-        let by_frames = by_frames.as_ref().map(robust);
-        let by_blocks = robust(&best.slope.by_blocks);
+        let by = |group: Group| -> Result<Matrix, LabError> {
+            Ok(robust(&problem.left_out(best, &information, group)?))
+        };
+        let by_frames = (more_than_noise && enough_frames).then(|| by(Group::Frame));
+        let by_frames = by_frames.transpose()?;
+        // Along the cosines there are no blocks of pixels.
+        let by_blocks = (more_than_noise && field.is_none()).then(|| by(Group::Block));
+        let by_blocks = by_blocks.transpose()?;
         let scene = problem.geometry.scene;
         let names = self.names(problem);
         let finer = problem.finer(best, &covariance)?;
@@ -72,8 +77,7 @@ impl CalibrationPlan {
             let root = |m: &Matrix| m[(k, k)].max(0.0).sqrt();
             let by_curvature = root(&covariance);
             let by_frames = by_frames.as_ref().map(root);
-            // Along the cosines there are no blocks of pixels.
-            let by_blocks = (more_than_noise && field.is_none()).then(|| root(&by_blocks));
+            let by_blocks = by_blocks.as_ref().map(root);
             let profile = profile::profile(problem, best, &covariance, k)?;
             let by_profile = profile.as_ref().map_or(0.0, Profile::stderr);
             let others = [by_frames, by_blocks].map(|x| x.unwrap_or(0.0));
@@ -144,7 +148,8 @@ impl CalibrationPlan {
             replicates: known.replicates.filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),
             follows_entries: known.follows_entries,
-            noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
+            neighbours,
+            noise: ends[0].noise(),
             field: field.as_ref().map(|f| f.errors),
             log_likelier: field.as_ref().map(|_| alone - total),
             misfit: best.value.chi2 / dof,
@@ -179,6 +184,20 @@ impl CalibrationPlan {
         let gains =
             (0..problem.geometry.gains).map(|l| (format!("gain of frame {l}"), String::new()));
         own.chain(gains).collect()
+    }
+}
+
+impl Problem<'_> {
+    /// The correlation of what is left of neighbouring pixels, where it is more than chance, of a
+    /// noise that is stated for each entry's own.
+    fn neighbours(&self, best: &State) -> Result<Option<f64>, LabError> {
+        let own = self.photographs.certainty.errors == Errors::Independent;
+        if self.photographs.stderr.is_none() || self.cosines.is_some() || !own {
+            return Ok(None);
+        }
+        let light = self.light(&best.values, self.relative(best.factor), false)?;
+        let [beside, squares] = self.seen(best.factor).beside(&light, &best.value.rho)?;
+        Ok(correlated(beside, squares, best.value.count))
     }
 }
 

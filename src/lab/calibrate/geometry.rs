@@ -26,7 +26,7 @@ pub(super) struct Geometry<'a> {
     pub scene: &'a Scene,
     pub parameters: &'a [Parameter],
     pub elements: Option<[usize; 2]>,
-    /// Past what stands in the way only [`Fineness::Finer`] is another one.
+    /// Past what stands in the way there is one finer than the first.
     pub fineness: Fineness,
     pub occlusion: Occlusion,
     /// Frames whose gain is unknown: none or all.
@@ -124,8 +124,8 @@ impl Geometry<'_> {
             let rates = swept.rates.into_iter().enumerate().map(rate);
             let rates = rates.collect::<Result<_, LabError>>()?;
             let terms = match self.fineness {
-                Fineness::Finer => self.past(&scene, &[], Effort::FINEST)?.terms,
-                Fineness::Centres | Fineness::Areas => swept.terms,
+                Fineness::Centres | Fineness::Areas(..=1) => swept.terms,
+                Fineness::Areas(_) => self.past(&scene, &[], Effort::FINEST)?.terms,
             };
             (terms, swept.elements, rates)
         } else {

@@ -22,9 +22,6 @@ use crate::matrix::Matrix;
 use crate::num::cosines::along_cosines;
 use crate::num::linalg::{Cholesky, product, tr_product};
 
-/// Pixels are put in so many blocks a side, to see whether errors hang together.
-pub(super) const BLOCKS: usize = 4;
-
 /// Photographs whose standard errors are `factor` times the stated ones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<'a> {
@@ -32,8 +29,6 @@ pub(super) struct Seen<'a> {
     /// Light that all frames share.
     pub common: Option<&'a Common>,
     pub factor: f64,
-    /// Columns of the picture's pixels.
-    pub columns: usize,
     /// Columns and rows of photographs that are along their cosines; none where they are as taken.
     pub cosines: Option<[usize; 2]>,
 }
@@ -65,12 +60,10 @@ pub(super) struct Slope {
     pub covariance: Matrix,
     /// R X: −∂ρ̂/∂θ, elements × unknowns.
     pub shift: Matrix,
-    /// Σ B⊥ᵀ(y − Aρ̂) of each block of pixels, unknowns × blocks.
-    pub by_blocks: Matrix,
 }
 
 impl Seen<'_> {
-    fn frames(&self) -> usize {
+    pub(super) fn frames(&self) -> usize {
         self.photographs.phi.ncols()
     }
 
@@ -150,6 +143,21 @@ impl Seen<'_> {
         let left = (0..self.frames()).into_par_iter().map(left);
         let left: Vec<f64> = left.collect::<Result<_, _>>()?;
         Ok(left.iter().sum())
+    }
+
+    /// Σ z z′ over pixels side by side and Σ z², z of y − Aρ.
+    pub(super) fn beside(&self, light: &Light, rho: &DVector<f64>) -> Result<[f64; 2], LabError> {
+        let of = |l: usize| -> Result<[f64; 2], LabError> {
+            let [y, a] = self.frame(light, l)?;
+            let left = y.column(0) - a * rho;
+            let pairs = left.iter().zip(left.iter().skip(1));
+            Ok([pairs.map(|(a, b)| a * b).sum(), left.norm_squared()])
+        };
+        let frames = (0..self.frames()).into_par_iter().map(of);
+        let frames: Vec<[f64; 2]> = frames.collect::<Result<_, _>>()?;
+        Ok(frames
+            .iter()
+            .fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]))
     }
 
     /// E r² of each row, over all frames: r what picture and other light leave of y, the
@@ -232,11 +240,9 @@ impl Seen<'_> {
         let second: Vec<Left> = second.collect::<Result<_, _>>()?;
         let mut curvature = tr_product(&x, &x);
         let mut slope = occam - x.tr_mul(&value.z);
-        let mut by_blocks = Matrix::zeros(unknowns, BLOCKS * BLOCKS);
         for own in &second {
             curvature += &own.square;
-            slope -= own.by_blocks.column_sum();
-            by_blocks += &own.by_blocks;
+            slope -= &own.score;
         }
         Ok(Slope {
             slope,
@@ -244,7 +250,6 @@ impl Seen<'_> {
             known,
             covariance,
             shift,
-            by_blocks,
         })
     }
 
@@ -308,19 +313,9 @@ impl Seen<'_> {
         let [y, a] = self.frame(light, l)?;
         let left = y.column(0) - &a * rho;
         let b = &own.b - product(&a, shift);
-        let rows = (b.nrows() / self.columns).max(1);
-        let mut by_blocks = Matrix::zeros(b.ncols(), BLOCKS * BLOCKS);
-        for p in 0..b.nrows() {
-            let [i, j] = [
-                p % self.columns * BLOCKS / self.columns,
-                (p / self.columns * BLOCKS / rows).min(BLOCKS - 1),
-            ];
-            let mut block = by_blocks.column_mut(i + j * BLOCKS);
-            block.axpy(left[p], &b.row(p).transpose(), 1.0);
-        }
         Ok(Left {
             square: tr_product(&b, &b),
-            by_blocks,
+            score: b.tr_mul(&left),
         })
     }
 }
@@ -333,8 +328,8 @@ pub(super) struct Columns {
     occam: DVector<f64>,
 }
 
-/// B⊥ᵀB⊥ of a frame, and B⊥ᵀ(y − Aρ̂) of each block of pixels.
+/// B⊥ᵀB⊥ and B⊥ᵀ(y − Aρ̂) of a frame.
 struct Left {
     square: Matrix,
-    by_blocks: Matrix,
+    score: DVector<f64>,
 }

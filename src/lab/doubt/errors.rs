@@ -1,6 +1,6 @@
 //! Standard errors, bands and probabilities that say less than they seem to.
 
-use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better};
+use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, neighbours_share};
 use crate::lab::fit::Judged;
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::num::digits::{figure, significant};
@@ -67,6 +67,13 @@ pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
             figure(share, 2)
         )
     })
+}
+
+/// Noise that neighbouring pixels share where it is taken for each one's own.
+pub(super) fn between_neighbours(judged: &Judged) -> Option<String> {
+    let fit = judged.fit.as_ref().filter(|fit| fit.fits)?;
+    let errors = "errors, bands and probabilities of the picture take each entry for its own: they are TOO SMALL";
+    Some(neighbours_share(fit.neighbours?, errors))
 }
 
 /// Photographs closer to the picture than their errors let them be.

@@ -433,6 +433,7 @@ fn pictures_that_contradict_each_other_are_told() {
         within_integration: None,
         outlier: None,
         pooled: None,
+        neighbours: None,
     };
     let contested = |found: &[Recovered; 2]| {
         let mut judged = [(); 2].map(|()| Judged {

@@ -138,6 +138,7 @@ impl LeftOver {
             within_integration: None,
             outlier: None,
             pooled: None,
+            neighbours: None,
         })
     }
 }

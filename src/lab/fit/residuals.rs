@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Fit;
 use crate::lab::agreement::freedom_of_rows;
-use crate::lab::certainty::{Certainty, Errors};
+use crate::lab::certainty::{Certainty, Errors, correlated};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, sidak_threshold};
@@ -37,6 +37,9 @@ pub struct Residuals {
     pub(super) left_out: usize,
     /// Pixel, spot and |z| of those far off.
     far: Vec<(usize, usize, f64)>,
+    /// z of the last row, and Σ z z′ over rows that follow each other: pixels side by side.
+    last: Vec<f64>,
+    beside: f64,
 }
 
 impl Residuals {
@@ -45,15 +48,20 @@ impl Residuals {
     pub fn add(&mut self, phi: &Matrix, seen: &Matrix, stderr: &Matrix, certainty: Certainty) {
         for p in 0..phi.nrows() {
             let mut sum = 0.0;
+            self.last.resize(phi.ncols(), 0.0);
             for l in 0..phi.ncols() {
                 let at = (p, l);
                 if stderr[at] <= 0.0 {
                     self.left_out += 1;
+                    self.last[l] = 0.0;
                     continue;
                 }
                 self.entries += 1;
-                let t = ((phi[at] - seen[at]) / stderr[at]).abs();
-                let z = certainty.normal(t);
+                let t = (phi[at] - seen[at]) / stderr[at];
+                let z = certainty.normal(t.abs());
+                let signed = z.copysign(t);
+                self.beside += signed * self.last[l];
+                self.last[l] = signed;
                 sum += z * z;
                 if z > FAR && self.far.len() <= MOST_FAR {
                     self.far.push((self.sums.len(), l, z));
@@ -71,7 +79,8 @@ impl Residuals {
         if left < 0.5 {
             return None;
         }
-        let chi2_per_dof = self.sums.iter().sum::<f64>() / left;
+        let squares = self.sums.iter().sum::<f64>();
+        let chi2_per_dof = squares / left;
         let dof = match certainty.errors {
             Errors::Independent => certainty.of_chi2(left),
             Errors::WithinRows => freedom_of_rows(&self.sums, self.entries) * left / entries,
@@ -91,6 +100,8 @@ impl Residuals {
                 .outlier(left, certainty)
                 .filter(|_| certainty.errors == Errors::Independent),
             pooled: certainty.pooled(),
+            neighbours: correlated(self.beside, squares, entries)
+                .filter(|_| certainty.errors == Errors::Independent),
         })
     }
 }

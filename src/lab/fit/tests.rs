@@ -131,6 +131,36 @@ fn errors_from_few_replicates_are_students() {
     assert!((fit.chi2_per_dof - 1.0).abs() < 0.09, "{fit:?}");
 }
 
+/// Normal deviates x of which each pixel has (x_p + x_p+1)/√2 have a correlation of ½ between
+/// pixels side by side, which is told; independent ones, of 40 draws, none.
+#[test]
+fn noise_that_neighbours_share_is_told() {
+    let (pixels, spots) = (200, 20);
+    let one = Matrix::from_element(pixels, spots, 1.0);
+    let of = |phi: &Matrix| {
+        let mut residuals = Residuals::default();
+        // In parts, as of photographs that are read by rows.
+        for first in [0, 60] {
+            let count = if first == 0 { 60 } else { pixels - 60 };
+            let part = |m: &Matrix| m.rows(first, count).into_owned();
+            residuals.add(
+                &part(phi),
+                &(part(phi) * 0.0),
+                &part(&one),
+                Certainty::STATED,
+            );
+        }
+        residuals.fit(0.0, Certainty::STATED).unwrap().neighbours
+    };
+    for seed in 0..40 {
+        let own = crate::lab::deviate::normal_deviates(seed, pixels + 1, spots);
+        let [a, b] = [0, 1].map(|first| own.rows(first, pixels).into_owned());
+        assert_eq!(of(&a), None);
+        let found = of(&((a + b) / 2f64.sqrt())).unwrap();
+        assert!((found - 0.5).abs() < 0.1, "{found}");
+    }
+}
+
 #[test]
 fn nothing_left_to_judge_by() {
     let mut residuals = Residuals::default();

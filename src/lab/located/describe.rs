@@ -172,9 +172,15 @@ impl Located {
             }
             None => "; its error is not known",
         };
+        let pieces = match bright.pieces {
+            1 => String::new(),
+            n => format!(
+                " It lies in {n} PIECES that do not touch, and between them need be none of it."
+            ),
+        };
         Some(format!(
             "The bright part, {} element{} of at least half the largest reflectance and above twice \
-             their error, has its middle at ({x}, {y}, {z}){error}.",
+             their error, has its middle at ({x}, {y}, {z}){error}.{pieces}",
             bright.elements,
             if bright.elements == 1 { "" } else { "s" }
         ))

@@ -27,6 +27,8 @@ pub struct Bright {
     pub stderr: Option<[f64; 3]>,
     /// The elements.
     pub elements: usize,
+    /// Pieces that do not touch each other: the middle of several need not be bright.
+    pub pieces: usize,
 }
 
 /// The reflectances of one surface, over the largest of all.

@@ -101,6 +101,7 @@ impl Pictured {
         let is_seen = |j: &usize| self.rho[*j] > 2.0 * stderr[*j];
         let seen: Vec<usize> = (0..places.len()).filter(is_seen).collect();
         let (own, elements) = middle(&self.rho, places, &seen)?;
+        let pieces = pieces(&model.grids, &elements);
         let sides = mean_sides(model, &self.rho, &seen);
         let without = self.without.iter();
         let without: Option<Vec<[f64; 3]>> = without
@@ -120,7 +121,8 @@ impl Pictured {
         Some(Bright {
             middle: own,
             stderr,
-            elements,
+            elements: elements.len(),
+            pieces,
         })
     }
 }
@@ -154,16 +156,45 @@ fn mean_sides(model: &MatrixModel, rho: &DVector<f64>, seen: &[usize]) -> Option
 }
 
 /// The mean place of the elements of `seen` with at least half the largest reflectance of those,
-/// weighted by it, and their number; none where none is above 0.
-fn middle(rho: &DVector<f64>, places: &[[f64; 3]], seen: &[usize]) -> Option<([f64; 3], usize)> {
+/// weighted by it, and these elements; none where none is above 0.
+fn middle(
+    rho: &DVector<f64>,
+    places: &[[f64; 3]],
+    seen: &[usize],
+) -> Option<([f64; 3], Vec<usize>)> {
     let largest = seen.iter().map(|j| rho[*j]).fold(0.0, f64::max);
-    let bright = || {
-        seen.iter()
-            .filter(|j| largest > 0.0 && rho[**j] >= 0.5 * largest)
+    let is_bright = |j: &usize| largest > 0.0 && rho[*j] >= 0.5 * largest;
+    let bright: Vec<usize> = seen.iter().copied().filter(is_bright).collect();
+    let sum: f64 = bright.iter().map(|j| rho[*j]).sum();
+    let mean = |k: usize| bright.iter().map(|j| rho[*j] * places[*j][k]).sum::<f64>() / sum;
+    let mean = [0, 1, 2].map(mean);
+    (sum > 0.0).then_some((mean, bright))
+}
+
+/// Of how many pieces these elements are, those of one grid that share an edge or a corner being
+/// of one.
+fn pieces(grids: &[ElementGrid], elements: &[usize]) -> usize {
+    let place = |j: usize| {
+        let of = |g: &ElementGrid| (g.first..g.first + g.len()).contains(&j);
+        let grid = grids.iter().position(of).unwrap_or(0);
+        let own = j - grids[grid].first;
+        (grid, own % grids[grid].count[0], own / grids[grid].count[0])
     };
-    let sum: f64 = bright().map(|j| rho[*j]).sum();
-    let mean = |k: usize| bright().map(|j| rho[*j] * places[*j][k]).sum::<f64>() / sum;
-    (sum > 0.0).then(|| ([0, 1, 2].map(mean), bright().count()))
+    let touch = |a: usize, b: usize| {
+        let (a, b) = (place(a), place(b));
+        a.0 == b.0 && a.1.abs_diff(b.1) <= 1 && a.2.abs_diff(b.2) <= 1
+    };
+    let (mut left, mut count) = (elements.to_vec(), 0);
+    while let Some(first) = left.pop() {
+        count += 1;
+        let mut piece = vec![first];
+        while let Some(own) = piece.pop() {
+            let (near, rest) = left.iter().partition(|other| touch(own, **other));
+            left = rest;
+            piece.extend::<Vec<usize>>(near);
+        }
+    }
+    count
 }
 
 /// One λ.

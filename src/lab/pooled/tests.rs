@@ -165,6 +165,37 @@ fn bands_from_three_replicates_hold_what_they_say() {
     }
 }
 
+/// Right light, errors from 2 or 3 photographs, the noise a product or scattering by 0.3 about one:
+/// of 300 draws so many are improbable at 5 % as that says, within the binomial 99.9 %, and χ² is
+/// what is expected of it to a hundredth. As squares of Student's t of the degrees of
+/// freedom as from which errors are known, that are the fewest that are sure, none was of 3, and of
+/// 2 one in seven at 0.1 %.
+#[test]
+fn right_light_is_as_improbable_as_is_said() {
+    let (pixels, spots, draws) = (100, 24, 300);
+    let exact = Matrix::from_element(pixels, spots, 5.0);
+    for (count, scatter) in [(2, 0.0), (3, 0.0), (3, 0.3)] {
+        let mut random = normal(7);
+        let (mut few, mut ratio) = (0, 0.0);
+        for seed in 0..draws {
+            let sigma = Matrix::from_fn(pixels, spots, |p, l| {
+                let own = libm::exp(scatter * random()[0]);
+                own * (1.0 + p as f64 / 10.0) * (1.0 + (l % 7) as f64)
+            });
+            let [phi, stderr] = repeated(&exact, &sigma, count, 3000 + seed);
+            let pooled = Pooled::of(&stderr, from(count), None).unwrap();
+            let left = (&phi - &exact).component_div(&pooled.stderr);
+            let (chi2, dof) = (left.norm_squared(), left.len() as f64);
+            few += u64::from(pooled.certainty.by_noise(chi2, dof) < 0.05);
+            let [square, _] = pooled.certainty.pooled_from.unwrap().squares;
+            ratio += chi2 / dof / square / draws as f64;
+        }
+        let [least, most] = binomial_interval(draws, 0.05, 0.999);
+        assert!((least..=most).contains(&few), "{count} {scatter}: {few}");
+        assert!((ratio - 1.0).abs() < 0.01, "{count} {scatter}: {ratio}");
+    }
+}
+
 /// Right light of noise that is a product, its errors from 3 photographs: the verdict, and χ² of a
 /// recovery, reject no oftener than they say, within the binomial 99.9 % of 500 draws (the less
 /// often, for how far σ² is a product is learnt from these photographs too). Light 1.2 σ off in

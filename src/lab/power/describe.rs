@@ -12,6 +12,11 @@ impl Describe for Power {
             tone: if as_stated { Tone::Good } else { Tone::Bad },
             sentence: self.sentence(),
             tables: vec![self.right(), self.wrong()],
+            notes: self
+                .unmodelled
+                .iter()
+                .map(|what| format!("Not in the model: {what}."))
+                .collect(),
             ..Finding::default()
         }
     }
@@ -21,7 +26,9 @@ impl Power {
     /// The smallest error that is detected, and how often a right model is rejected.
     fn sentence(&self) -> String {
         let rows = || self.rows.iter();
-        let sharpest = rows().min_by(|a, b| a.smallest_scale.total_cmp(&b.smallest_scale));
+        // 0 where the right model is rejected.
+        let known = rows().filter(|r| r.smallest_scale > 0.0);
+        let sharpest = known.min_by(|a, b| a.smallest_scale.total_cmp(&b.smallest_scale));
         let sharpest = sharpest.map_or(String::new(), |r| {
             format!(
                 "The smallest scale error that validate detects on {} is {} (median over {} renders by {} with {} samples). ",
@@ -110,6 +117,7 @@ mod tests {
             scene_hash: String::new(),
             sampler: "sobol".to_owned(),
             significance: 0.01,
+            unmodelled: Vec::new(),
             rows,
         };
         let fine = study(vec![row(0, 0.02), row(2, 0.005)]).describe();

@@ -59,6 +59,8 @@ pub struct PowerRow {
 pub struct Power {
     /// Name of the scene.
     pub scene: String,
+    /// Light that the scene has and its model does not: a right model is then rejected for it.
+    pub unmodelled: Vec<String>,
     /// Its hash.
     pub scene_hash: String,
     /// Sampler.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::results::{Detection, PowerPlan, PowerRow};
 use crate::lab::agreement::agree;
 use crate::lab::evidence::{Evidence, Test};
+use crate::lab::seldom::Seldom;
 use crate::matrix::Matrix;
 use crate::num::statistics::binomial_interval;
 use crate::transport::{Estimator, Traced};
@@ -13,6 +14,10 @@ use crate::transport::{Estimator, Traced};
 #[derive(Debug)]
 pub struct Models {
     pub(super) right: Matrix,
+    /// What its quadrature may be off by.
+    pub(super) bound: Matrix,
+    /// What of each entry is visible where something stands in the way.
+    pub(super) share: Option<Matrix>,
     pub(super) wrong: Vec<(String, f64, Matrix)>,
 }
 
@@ -27,18 +32,32 @@ pub struct Verdicts {
     pub(super) smallest_scale: f64,
 }
 
-/// Tests a render against every model.
-pub(super) fn verdicts(traced: &Traced, models: &Models, test: Test) -> Verdicts {
+/// Tests a render against every model as `validate` does, with shadows that are `seldom` met.
+pub(super) fn verdicts(
+    traced: &Traced,
+    models: &Models,
+    test: Test,
+    seldom: Option<&Seldom>,
+) -> Verdicts {
     let verdict = |model: &Matrix| {
-        let evidence = Evidence {
-            traced: &traced.flux,
-            stderr: &traced.stderr,
-            model,
-            bound: None,
-            left_out: None,
-            eliminated: None,
+        let by = |stderr: &Matrix| {
+            let evidence = Evidence {
+                traced: &traced.flux,
+                stderr,
+                model,
+                bound: Some(&models.bound),
+                left_out: None,
+                eliminated: None,
+            };
+            agree(evidence, test, None).0
         };
-        agree(evidence, test, None).0
+        let own = by(&traced.stderr);
+        let seldom = seldom.filter(|_| !own.agrees);
+        let added = seldom.map(|seldom| seldom.added_to(&traced.stderr, model));
+        match added.filter(|(_, entries)| *entries > 0) {
+            Some((stderr, _)) => by(&stderr),
+            None => own,
+        }
     };
     let own = verdict(&models.right);
     let wrong = models.wrong.iter();

@@ -244,7 +244,7 @@ fn by_derivative(scene: &Scene, what: &Misplaced) -> Option<[f64; 2]> {
         let rate = swept.rates.into_iter().next()??;
         [swept.terms.phi(&albedo), rate.phi(&albedo)]
     } else {
-        let model = Differential::new(scene, None, Fineness::Areas).ok()?;
+        let model = Differential::new(scene, None, Fineness::Areas(1)).ok()?;
         let (terms, rate, n) = (model.terms(), model.rate(&velocity), model.elements());
         let rho = nalgebra::DVector::from_vec(albedo);
         let spots = 0..scene.laser.spots.len();

@@ -62,7 +62,7 @@ fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Fineness)
 fn all_within(scene: &Scene, names: &[&str], values: impl Fn(usize) -> f64, limit: f64) {
     let parameters = parameters(scene, names);
     let values: Vec<f64> = (0..parameters.len()).map(values).collect();
-    for take in [Fineness::Centres, Fineness::Areas] {
+    for take in [Fineness::Centres, Fineness::Areas(1)] {
         let found = worst(scene, &parameters, &values, take);
         for (p, off) in parameters.iter().zip(found) {
             assert!(off < limit, "{} {take:?}: {off:e}", p.name);
@@ -109,7 +109,7 @@ fn rates_of_the_wall_are_those_of_displaced_scenes() {
         &scene,
         &parameters,
         &[0.05, 0.4, -0.3, 0.1],
-        Fineness::Areas,
+        Fineness::Areas(1),
     );
     assert!(found.iter().all(|off| *off < 1e-4), "{found:?}");
 }
@@ -173,7 +173,7 @@ fn terms_are_those_of_the_matrix_model() {
             Effort::USUAL,
         );
         let want = want.unwrap().phi();
-        let own = Differential::new(&scene, Some([3, 2]), Fineness::Areas).unwrap();
+        let own = Differential::new(&scene, Some([3, 2]), Fineness::Areas(1)).unwrap();
         let off = (phi(&own.terms()) - &want).norm() / want.norm();
         assert!(off < 3e-3, "{name}: {off:e}");
     }

@@ -71,6 +71,45 @@ fn errors_that_are_too_large_are_told() {
     }
 }
 
+/// Noise of which each pixel has half of its neighbour's has the variance that is stated, and χ²
+/// says nothing: that neighbours share it is told, errors by blocks of pixels count, and over 24
+/// draws the surface is off by what is stated, √χ²/n within four of its errors. Of single pixels'
+/// noise nothing is told.
+#[test]
+fn noise_that_neighbours_share_is_in_the_errors() {
+    let scene = small("bench", 16);
+    let (exact, _) = photographs(&scene, 4, 0.0, 1);
+    let stderr = &exact * 1e-2;
+    let found = |seed: u64, share: f64| {
+        let mut random = normal(seed);
+        let own = Matrix::from_fn(exact.nrows() + 1, exact.ncols(), |_, _| random()[0]);
+        let noise =
+            |p: usize, l: usize| (own[(p, l)] + share * own[(p + 1, l)]) / 1f64.hypot(share);
+        let noise = Matrix::from_fn(exact.nrows(), exact.ncols(), noise);
+        let phi = &exact + stderr.component_mul(&noise);
+        let plan = plan(&["hidden.normal"], 4);
+        let found = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+        found.unwrap()
+    };
+    let draws = 24;
+    let squares = (0..draws).map(|seed| {
+        let found = found(seed, 1.0);
+        assert!((found.neighbours.unwrap() - 0.5).abs() < 0.1);
+        let notes = found.describe().notes.concat();
+        assert!(notes.contains("HANGS TOGETHER"), "{notes}");
+        let own = &found.found[0];
+        assert!(own.by_blocks.is_some());
+        (own.value / own.stderr).powi(2)
+    });
+    let rms = (squares.sum::<f64>() / draws as f64).sqrt();
+    assert!(
+        (rms - 1.0).abs() < 4.0 / (2.0 * draws as f64).sqrt(),
+        "{rms}"
+    );
+    let alone = found(1, 0.0);
+    assert!(alone.neighbours.is_none() && alone.found[0].by_blocks.is_none());
+}
+
 /// Wide spots past a thin rod, photographs traced, which knows of no elements: the stated error
 /// knows what their light is not integrated to, and no geometry is refuted for it.
 #[test]
@@ -292,12 +331,12 @@ fn drifting(drift: f64, seed: u64) -> (Scene, Matrix) {
     (scene, phi)
 }
 
-/// Errors by single frames of an unstated noise are those of leaving out one frame after the other
-/// and fitting the others anew, √((m − 1)/m Σ (θ_(c) − θ̄)²), to a tenth.
+/// Errors by frames and by blocks of pixels of an unstated noise are those of leaving out one after
+/// the other and fitting the others anew, √((m − 1)/m Σ (θ_(c) − θ̄)²), to a tenth.
 #[test]
-fn errors_by_frames_are_those_without_each() {
+fn errors_by_groups_are_those_without_each() {
     let (scene, phi) = drifting(0.01, 3);
-    let frames = phi.ncols();
+    let (pixels, frames) = phi.shape();
     let found = |left_out: Option<&Matrix>| {
         let photographs = Unexplained {
             phi: &phi,
@@ -309,16 +348,25 @@ fn errors_by_frames_are_those_without_each() {
         let found = plan(&["hidden.normal"], 4).calibrate(&scene, &photographs, Control::none());
         found.unwrap().found.swap_remove(0)
     };
-    let without = (0..frames).map(|c| {
-        let flags = Matrix::from_fn(phi.nrows(), frames, |_, l| f64::from(u8::from(l == c)));
-        found(Some(&flags)).value
-    });
-    let without = DVector::from_iterator(frames, without);
-    let m = frames as f64;
-    // That of nalgebra is Σ (θ − θ̄)²/m.
-    let jackknife = ((m - 1.0) * without.variance()).sqrt();
-    let own = found(None).by_frames.unwrap();
-    assert!((own / jackknife - 1.0).abs() < 0.1, "{own} {jackknife}");
+    let jackknife = |groups: usize, of: &dyn Fn(usize, usize) -> usize| {
+        let without = (0..groups).map(|c| {
+            let flag = |p, l| f64::from(u8::from(of(p, l) == c));
+            found(Some(&Matrix::from_fn(pixels, frames, flag))).value
+        });
+        let without = DVector::from_iterator(groups, without);
+        // That of nalgebra is Σ (θ − θ̄)²/m.
+        ((groups as f64 - 1.0) * without.variance()).sqrt()
+    };
+    let own = found(None);
+    // Blocks of 2 × 2 of the 8 × 8 pixels.
+    let by_blocks = jackknife(16, &|p, _| p % 8 / 2 + p / 16 * 4);
+    for (own, refitted) in [
+        (own.by_frames, jackknife(frames, &|_, l| l)),
+        (own.by_blocks, by_blocks),
+    ] {
+        let own = own.unwrap();
+        assert!((own / refitted - 1.0).abs() < 0.1, "{own} {refitted}");
+    }
 }
 
 /// Photographs whose frames drift by 1 %, which nothing states: over 32 draws the hidden surface is

@@ -82,6 +82,35 @@ fn a_misfit_that_a_finer_rule_leaves_refutes() {
     assert!(!found.is_found(), "{}", found.describe().sentence);
 }
 
+/// Of photographs whose noise is far below what the coarse rule leaves out, the errors are those of
+/// the noise, and hold the truth: the estimate goes on by the finer rule.
+#[test]
+fn the_estimate_goes_on_by_a_finer_rule() {
+    let scene = small("bench", 8);
+    let names = ["hinge.angle", "hidden.normal"];
+    let parameters = names.map(|name| Parameter::named(&scene, name).unwrap().remove(0));
+    let truth = [0.5, 0.05];
+    let there = scene.displaced(&parameters, &truth).unwrap();
+    let (kernel, occlusion) = (Kernel::Physical, Occlusion::Considered);
+    let model = MatrixModel::over_areas(&there, kernel, Some([2; 2]), occlusion, Effort::FINEST);
+    let phi = model.unwrap().phi();
+    let stderr = &phi * 1e-5;
+    let mut random = normal(8);
+    let noisy = phi.zip_map(&stderr, |x, s| x + s * random()[0]);
+    let plan = CalibrationPlan {
+        integration: Integration::Quadrature,
+        ..plan(&names, 2)
+    };
+    let found = plan.calibrate(&scene, &unexplained(&noisy, &stderr), Control::none());
+    let found = found.unwrap();
+    assert!(found.is_settled && found.p.unwrap() > 1e-3, "{:?}", found.p);
+    for (own, want) in found.found.iter().zip(truth) {
+        let off = (own.value - want) / own.stderr;
+        assert!(off.abs() < 3.0, "{own:?}");
+        assert!(own.stderr < 1.3 * own.by_curvature, "{own:?}");
+    }
+}
+
 /// What moves together is refused with its names, and taken where one of it is known.
 #[test]
 fn what_light_does_not_tell_is_refused() {

@@ -79,6 +79,30 @@ fn a_bright_part_is_known_no_finer_than_its_elements() {
     }
 }
 
+/// Two bright corners have their common middle where nothing is: that they are two is said, and of
+/// one board not.
+#[test]
+fn a_bright_part_in_pieces_is_told() {
+    let scene = bench();
+    let plan = LocatedPlan {
+        elements: Some([4, 4]),
+        ..by_centres([-0.2, 0.2], 0)
+    };
+    let model = plan.model(&scene).unwrap();
+    for (bright, pieces) in [(vec![0, 15], 2), (vec![5, 6, 9, 10], 1)] {
+        let albedo = |j: usize| if bright.contains(&j) { 0.8 } else { 0.0 };
+        let albedo: Vec<f64> = (0..16).map(albedo).collect();
+        let phi = model.phi_of(&albedo);
+        let sigma = 1e-3 * phi.norm() / (phi.len() as f64).sqrt();
+        let stderr = phi.map(|_| sigma);
+        let phi = &phi + noise(phi.nrows(), phi.ncols(), 3) * sigma;
+        let found = located(&scene, &phi, &stderr, plan);
+        let notes = found.describe().notes.concat();
+        assert_eq!(found.picture.unwrap().bright.unwrap().pieces, pieces);
+        assert_eq!(notes.contains("PIECES"), pieces > 1, "{notes}");
+    }
+}
+
 /// Errors that entries share are the same in every frame, so that none left out shows them.
 #[test]
 fn errors_that_hang_together_are_told() {
