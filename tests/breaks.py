@@ -2086,6 +2086,15 @@ BREAKS = [
         "lab::power::tasks::tests::renders_are_judged_as_validate_judges_them",
         17,
     ),
+    Break(
+        "Errors that entries share are told where a deviation is rejected",
+        "src/lab/verdict.rs",
+        "let is_close = noise_alone && fits_better",
+        "let is_close = self.agrees && noise_alone && fits_better",
+        "lib",
+        "lab::agreement::tests::a_deviation_of_what_entries_share_is_told",
+        17,
+    ),
 ]
 
 

@@ -148,10 +148,15 @@ impl Agreement {
     fn overstated(&self) -> Option<String> {
         let noise_alone =
             self.seldom == 0 && self.relative_discretisation < SMALL * self.relative_noise;
-        let is_close = self.agrees && noise_alone && fits_better(self.chi2_per_dof, self.chi2_p);
+        let is_close = noise_alone && fits_better(self.chi2_per_dof, self.chi2_p);
+        let then = if self.agrees {
+            "A model that is wrong by less than they say is not refused; give errors that are right, and all that is detected is smaller"
+        } else {
+            "What entries share looks like a deviation of the scene: say which share theirs (`--errors`)"
+        };
         is_close.then(|| {
             format!(
-                "traced and modelled are CLOSER than the standard errors allow: these are about {} times too large, or entries share them. A model that is wrong by less than they say is not refused; give errors that are right, and all that is detected is smaller",
+                "traced and modelled are CLOSER than the standard errors allow: these are about {} times too large, or entries share them. {then}",
                 figure(self.chi2_per_dof.recip().sqrt(), 2)
             )
         })

@@ -1,5 +1,6 @@
 use super::*;
 use crate::lab::certainty::Certainty;
+use crate::lab::score::{Derivatives, Parameter};
 use crate::num::stream::{Key, Sampling, Stream};
 
 const ROWS: usize = 40;
@@ -203,4 +204,48 @@ fn errors_that_are_too_large_are_told() {
             }
         }
     }
+}
+
+/// A fluctuation of 0.4 % that all entries share, stated as 1 % of each entry's own: χ² is small,
+/// the scale is rejected, and the verdict says that entries share their errors.
+#[test]
+fn a_deviation_of_what_entries_share_is_told() {
+    let model = Matrix::from_element(ROWS, COLUMNS, 1.0);
+    let (traced, stderr) = (&model * 1.004, &model * 0.01);
+    let scale = Parameter {
+        name: "overall scale".to_owned(),
+        unit: "%".to_owned(),
+        reach: None,
+        same: Vec::new(),
+        each_spot: None,
+    };
+    let slope = &model * 0.01;
+    let derivatives = Derivatives {
+        parameters: &[scale],
+        of: &|_| Some(slope.clone()),
+        moved: &|_, size| Some([&slope * size, slope.clone()]),
+    };
+    let evidence = Evidence {
+        traced: &traced,
+        stderr: &stderr,
+        model: &model,
+        bound: None,
+        left_out: None,
+        eliminated: None,
+    };
+    let test = Test {
+        significance: 1e-3,
+        known: Certainty::STATED,
+    };
+    let found = agree(evidence, test, Some(&derivatives)).0;
+    assert!(!found.agrees && found.chi2_per_dof < 0.2);
+    let errors = found
+        .facts()
+        .into_iter()
+        .find(|(name, _)| *name == "errors");
+    let (_, words) = errors.unwrap();
+    assert!(
+        words.contains("CLOSER") && words.contains("What entries share"),
+        "{words}"
+    );
 }
