@@ -2083,7 +2083,7 @@ BREAKS = [
         "match added.filter(|(_, entries)| *entries > 0) {",
         "match added.filter(|_| false) {",
         "lib",
-        "lab::power::tasks::tests::renders_are_judged_as_validate_judges_them",
+        "lab::power::tasks::tests::shadows_that_few_paths_meet_are_allowed_for",
         17,
     ),
     Break(

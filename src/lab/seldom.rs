@@ -70,7 +70,7 @@ impl Seldom {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::lab::misplaced::normal;
     use crate::lab::{Against, Errors, Integration, Measured, Test, validate};
@@ -80,10 +80,10 @@ mod tests {
     use crate::scene::file::SceneFile;
 
     const BLOCKS: u32 = 32;
-    const PATHS: u64 = 3200;
+    pub(in crate::lab) const PATHS: u64 = 3200;
 
     /// The bench with small plates in the way.
-    fn bench(plates: &[[f64; 3]]) -> Scene {
+    pub(in crate::lab) fn bench(plates: &[[f64; 3]]) -> Scene {
         let mut file = SceneFile::builtin("bench").unwrap();
         file.camera.pixels = [6; 2];
         file.laser.as_mut().unwrap().spots.per_side = Some(3);
@@ -99,7 +99,7 @@ mod tests {
         Scene::from_toml("plates", &text).unwrap()
     }
 
-    fn certainty(paths: Option<u64>) -> Certainty {
+    pub(in crate::lab) fn certainty(paths: Option<u64>) -> Certainty {
         Certainty {
             paths,
             ..Certainty::new(Errors::Independent, Some(BLOCKS))
@@ -108,7 +108,7 @@ mod tests {
 
     /// Block means of light of which each path meets a shadow by chance, and their error; other
     /// noise is a millionth.
-    fn blocks(free: &Matrix, taken: &Matrix, seed: u64) -> [Matrix; 2] {
+    pub(in crate::lab) fn blocks(free: &Matrix, taken: &Matrix, seed: u64) -> [Matrix; 2] {
         let key = Key {
             seed,
             spot: 0,

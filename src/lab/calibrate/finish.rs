@@ -7,7 +7,7 @@ use super::{
     Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
     Starts, profile,
 };
-use crate::lab::certainty::{Errors, correlated};
+use crate::lab::certainty::{Errors, correlated, fits_better};
 use crate::lab::error::LabError;
 use crate::lab::located::Grid;
 use crate::lab::validation::Integration;
@@ -50,7 +50,9 @@ impl CalibrationPlan {
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
         let p = is_noise_known.then(|| known.by_noise(best.value.chi2, dof));
-        let neighbours = problem.neighbours(best)?;
+        // Of less than noise leaves nothing is told.
+        let is_close = p.is_some_and(|p| fits_better(best.value.chi2 / dof, p));
+        let neighbours = problem.neighbours(best)?.filter(|_| !is_close);
         let more_than_noise = p.is_none_or(|p| p < LEVEL) || neighbours.is_some();
         let robust = |scores: &Matrix| {
             let moved = &covariance * scores;

@@ -1,7 +1,7 @@
 //! Standard errors, bands and probabilities that say less than they seem to.
 
 use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, neighbours_share};
-use crate::lab::fit::Judged;
+use crate::lab::fit::{Fit, Judged};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::num::digits::{figure, significant};
 use crate::recovery::{Choice, Method, Recovered};
@@ -69,9 +69,11 @@ pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
     })
 }
 
-/// Noise that neighbouring pixels share where it is taken for each one's own.
+/// Noise that neighbouring pixels share where it is taken for each one's own: of what is left over
+/// as noise leaves it, not of less.
 pub(super) fn between_neighbours(judged: &Judged) -> Option<String> {
-    let fit = judged.fit.as_ref().filter(|fit| fit.fits)?;
+    let is_noise = |fit: &&Fit| fit.fits && !fits_better(fit.chi2_per_dof, fit.p);
+    let fit = judged.fit.as_ref().filter(is_noise)?;
     let errors = "errors, bands and probabilities of the picture take each entry for its own: they are TOO SMALL";
     Some(neighbours_share(fit.neighbours?, errors))
 }
