@@ -1925,15 +1925,6 @@ BREAKS = [
         16,
     ),
     Break(
-        "How large errors of unlike neighbours are counts how far the picture shown is from theirs",
-        "src/recovery/joint/gaussian_process/mixture.rs",
-        "unalike.square_about(&all.mean).mean()",
-        "unalike.variance().mean()",
-        "lib",
-        "recovery::joint::gaussian_process::tests::one_element_by_hand",
-        16,
-    ),
-    Break(
         "Where nothing was counted the error is that of the light",
         "src/lab/refined.rs",
         "x == 0.0 && stderr == 0.0 &&",
