@@ -63,7 +63,7 @@ pub(super) struct Slope {
 }
 
 impl Seen<'_> {
-    pub(super) fn frames(&self) -> usize {
+    fn frames(&self) -> usize {
         self.photographs.phi.ncols()
     }
 
