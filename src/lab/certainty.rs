@@ -75,6 +75,21 @@ pub struct PooledFrom {
     pub replicates: u32,
     /// What is expected of the square of a deviate over them, and of its fourth power.
     pub squares: [f64; 2],
+    /// E σ²/s⁴ over E 1/s², s the pooled errors and σ those that they estimate: how many times too
+    /// small a variance is that takes s for σ, of what all entries change alike with.
+    pub variance: f64,
+}
+
+/// Errors that are too small by less are right: those from 32 replicates.
+const TOO_SMALL: f64 = 1.075;
+
+/// How many times too small, in words.
+pub(super) fn times_too_small(times: f64) -> String {
+    if times.is_finite() {
+        format!("about {} times TOO SMALL", figure(times, 2))
+    } else {
+        "several times TOO SMALL".to_owned()
+    }
 }
 
 /// What is known of standard errors.
@@ -155,6 +170,21 @@ impl Certainty {
         }
     }
 
+    /// How many times too small errors are of what is fitted with weights of 1/s², as if the
+    /// standard errors s were known: the fit has the variance Σ σ²/s⁴ over (Σ 1/s²)², and states
+    /// 1/Σ 1/s². Of ν degrees of freedom the ratio is ν/(ν − 4), without end up to 4. None where
+    /// they are known, or well enough.
+    pub(super) fn too_small(self) -> Option<f64> {
+        let nu = freedom(self.replicates?);
+        let variance = match self.pooled_from {
+            Some(own) => own.variance,
+            None if nu > 4.0 => nu / (nu - 4.0),
+            None => f64::INFINITY,
+        };
+        let times = variance.sqrt();
+        (times > TOO_SMALL).then_some(times)
+    }
+
     /// Probability of as large a sum χ² of squared deviates over standard errors by noise alone. Of
     /// errors of ν > 4 degrees of freedom each square is that of Student's t, of mean ν/(ν − 2) and
     /// variance 2 (ν − 1)/(ν − 4) times the square of that, of pooled ones that of
@@ -227,6 +257,7 @@ mod tests {
             pooled_from: Some(PooledFrom {
                 replicates: 3,
                 squares: [1.0, 3.0],
+                variance: 1.0,
             }),
             ..Certainty::STATED
         };

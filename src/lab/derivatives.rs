@@ -49,6 +49,11 @@ const PERCENT: f64 = 0.1;
 /// that between their middles: the rest of a central difference is of its square, 1e-4.
 const OF_NEAREST: f64 = 0.01;
 const OF_MIDDLE: f64 = 1e-3;
+/// Scale and offset of the light of one spot: its laser, its exposure, the dark level then.
+const OF_ONE: [&str; 2] = [
+    "one photograph alone, scale",
+    "one photograph alone, offset",
+];
 /// 1 − cos² of the angle between two derivatives below which no light tells them apart.
 const PARALLEL: f64 = 1e-6;
 
@@ -69,12 +74,13 @@ impl<'a> SceneDerivatives<'a> {
         } else {
             "laser power"
         };
+        let several = scene.laser.spots.len() > 1;
         let scale = Parameter {
             name: "overall scale".to_owned(),
             unit: "%".to_owned(),
             reach: None,
             same: vec![(power.to_owned(), 1.0), ("aperture".to_owned(), 1.0)],
-            each_spot: None,
+            each_spot: several.then(|| OF_ONE[0].to_owned()),
         };
         let mut found = Self {
             scene,
@@ -92,7 +98,8 @@ impl<'a> SceneDerivatives<'a> {
             parameters: vec![scale],
         };
         let offset = "offset of all entries".to_owned();
-        found.add(Kind::Offset, offset, "% of the mean", None);
+        let each = several.then_some(OF_ONE[1]);
+        found.add(Kind::Offset, offset, "% of the mean", each);
         let reflecting = scene.relays().chain(scene.hidden());
         for (index, surface) in reflecting.filter(|(_, s)| s.is_lambertian()) {
             let name = albedo_of(&surface.name);
@@ -103,7 +110,7 @@ impl<'a> SceneDerivatives<'a> {
             }
         }
         for what in ALL.iter().filter(|what| what.size != Size::Random) {
-            let each = what.each_spot.filter(|_| scene.laser.spots.len() > 1);
+            let each = what.each_spot.filter(|_| several);
             let unit = what.size.unit(scene);
             found.add(Kind::Misplaced(what), what.name.to_owned(), unit, each);
         }

@@ -165,6 +165,7 @@ mod foot_on_wall;
 mod gains;
 mod gallery;
 mod grey;
+mod grounds;
 mod indicator;
 mod inversion;
 mod layout;

@@ -67,30 +67,29 @@ impl Pooled {
             stderr: pooled,
             certainty: Certainty {
                 replicates: Some((prior + nu + 1.0).min(f64::from(u32::MAX)) as u32),
-                pooled_from: Some(PooledFrom {
-                    replicates,
-                    squares: squares(&product, &variance, &at, (prior, nu)),
-                }),
+                pooled_from: Some(expected(replicates, &product, &variance, &at, prior)),
                 ..certainty
             },
         })
     }
 }
 
-/// E z² and E z⁴ of deviates z over pooled errors s̃ of d = `prior` and ν degrees of freedom, the
-/// noise normal, whatever the law of σ²: of s² = σ² χ²\[ν\]/ν and any f
+/// What is expected over pooled errors s̃ of d = `prior` and ν degrees of freedom, the noise
+/// normal, whatever the law of σ²: of s² = σ² χ²\[ν\]/ν and any f
 ///
 /// > E σ² f(s²) = ν/2 E s² ∫₀¹ u^(ν/2−1) f(u s²) du
 /// > E σ⁴ f(s²) = (ν/2)² E s⁴ ∫₀¹ u^(ν/2−1) (1 − u) f(u s²) du
 ///
 /// (the identity of Stein for gamma laws, by parts). The product follows each s² as one of n in its
 /// row and column. How well d is known does not matter: it is small where little tells it.
-fn squares(
+fn expected(
+    replicates: u32,
     product: &Separable,
     variance: &Matrix,
     at: &[usize],
-    (prior, nu): (f64, f64),
-) -> [f64; 2] {
+    prior: f64,
+) -> PooledFrom {
+    let nu = freedom(replicates);
     let (m, n) = variance.shape();
     let (mut rows, mut columns) = (vec![0.0; m], vec![0.0; n]);
     for at in at {
@@ -106,20 +105,30 @@ fn squares(
         let (own, product) = (variance[*at], product.at(*at));
         let [in_row, in_column] =
             [rows[at % m], columns[at / m]].map(|count| own / product / count);
-        nodes.iter().fold([0.0; 2], |[first, second], (u, w)| {
-            let less = u - 1.0;
-            let there = product * (1.0 + less * in_row) * (1.0 + less * in_column);
-            let ratio = own * (prior + nu) / (prior * there + nu * u * own);
-            [first + w * ratio, second - w * less * ratio * ratio]
-        })
+        let sums = nodes
+            .iter()
+            .fold([0.0; 3], |[first, second, both], (u, w)| {
+                let less = u - 1.0;
+                let there = product * (1.0 + less * in_row) * (1.0 + less * in_column);
+                let ratio = own * (prior + nu) / (prior * there + nu * u * own);
+                let square = w * ratio * ratio;
+                [first + w * ratio, second - less * square, both + square]
+            });
+        let [first, second, both] = sums;
+        let weight = (prior + nu) / (prior * product + nu * own);
+        [first, second, both / own, weight]
     };
     let half = 0.5 * nu;
     let sums = at
         .iter()
         .map(of)
-        .fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+        .fold([0.0; 4], |sum, x| std::array::from_fn(|k| sum[k] + x[k]));
     let count = at.len() as f64;
-    [half * sums[0] / count, 3.0 * half * half * sums[1] / count]
+    PooledFrom {
+        replicates,
+        squares: [half * sums[0] / count, 3.0 * half * half * sums[1] / count],
+        variance: half * sums[2] / sums[3],
+    }
 }
 
 /// The degrees of freedom as from which `product` tells a variance: what its logarithm scatters

@@ -4,23 +4,15 @@ use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged, is_obstructed};
 use crate::num::linalg::LinalgError;
 use crate::num::named::named;
-use crate::num::statistics::sidak_threshold;
 use crate::recovery::{Nuisance, RecoveryError};
 use crate::scene::Scene;
 
 use super::agreement::{Agreement, agree};
-use super::certainty::FOLLOWS_ENTRIES;
 use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
-use super::gains::Gains;
-use super::other_light::Left;
-use super::refined::Refined;
+use super::grounds::{Basis, Grounds};
 use super::score::Derivatives;
-use super::seldom::Seldom;
 use super::unmodelled::unmodelled;
-
-/// Replicates from which errors are known well enough for deviations of the scene to be fitted.
-pub(super) const FEWEST: u32 = 6;
 
 named! {
     /// How the model integrates.
@@ -166,51 +158,24 @@ pub fn validate(
         bound += (&centres - phi).abs();
         phi = centres;
     }
-    let refined = Refined::of(measured.phi, measured.stderr, test.known, beside.left_out);
-    let known = refined.certainty;
-    let test = Test { known, ..test };
     let share = visible.as_ref().map(|v| &v.share);
     let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);
-    let derivatives = Derivatives {
-        parameters: &off.parameters,
-        of: &|index| off.of(index),
-        moved: &|index, size| off.moved(index, size),
+    let basis = Basis {
+        scene,
+        kernel,
+        bound: &bound,
+        share,
+        derivatives: Derivatives {
+            parameters: &off.parameters,
+            of: &|index| off.of(index),
+            moved: &|index, size| off.moved(index, size),
+        },
     };
-    // Below, a variance has no variance itself, and no fit a known error.
-    let derivatives = (test.known.replicates.is_none_or(|n| n >= FEWEST)).then_some(&derivatives);
-    let verdict = |stderr: &Matrix| {
-        let evidence = Evidence {
-            traced: measured.phi,
-            stderr,
-            model: &phi,
-            bound: Some(&bound),
-            left_out: beside.left_out,
-            eliminated: None,
-        };
-        if beside.estimates() {
-            beside_other_light(evidence, test, &beside, derivatives)
-        } else {
-            Ok(agree(evidence, test, derivatives))
-        }
-    };
-    let (mut agreement, mut z) = verdict(&refined.stderr)?;
-    if let (true, false, Some(share)) = (agreement.evidence, agreement.agrees, share)
-        && let Some(seldom) = Seldom::new(scene, kernel, share, known)?
-    {
-        let (stderr, entries) = seldom.added_to(&refined.stderr, &phi);
-        if entries > 0 {
-            (agreement, z) = verdict(&stderr)?;
-            agreement.seldom = entries;
-        }
-    }
+    let (mut agreement, z) = Grounds::new(&basis, measured, test).verdict(&phi)?;
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
     agreement.occlusion = visible.as_ref().map(|v| v.points);
-    agreement.unmodelled = unmodelled(scene);
-    agreement.pooled = known.pooled();
-    if known.follows_entries {
-        agreement.unmodelled.push(FOLLOWS_ENTRIES.to_owned());
-    }
+    agreement.unmodelled.splice(0..0, unmodelled(scene));
     if let Some(score) = &mut agreement.score {
         score.shadows_stay = off.are_shadows_still();
     }
@@ -251,51 +216,4 @@ fn nothing_left(
         z,
         model,
     })
-}
-
-/// Agreement of the model with what is left of light when what is beside it was fitted and taken
-/// out.
-fn beside_other_light(
-    evidence: Evidence<'_>,
-    test: Test,
-    beside: &Nuisance<'_>,
-    derivatives: Option<&Derivatives<'_>>,
-) -> Result<(Agreement, Matrix), ValidationError> {
-    // An entry without a known error has no weight in a fit.
-    let counts = |at: usize| evidence.counts(at) && evidence.stderr[at] > 0.0;
-    let (rows, columns) = evidence.model.shape();
-    let flags = Matrix::from_fn(rows, columns, |p, l| {
-        f64::from(u8::from(!counts(p + l * rows)))
-    });
-    let evidence = Evidence {
-        left_out: Some(&flags),
-        ..evidence
-    };
-    if !flags.iter().any(|flag| *flag == 0.0) {
-        return Ok(agree(evidence, test, None));
-    }
-    let Left {
-        phi,
-        stderr,
-        scale,
-        other,
-        gains,
-        eliminated,
-    } = Left::of(&evidence, test, beside)?.ok_or(RecoveryError::TakenUp)?;
-    let unseen = scale.is_some_and(|[_, _, z]| z <= sidak_threshold(test.significance, 1));
-    let nothing = Matrix::from_element(rows, columns, 1.0);
-    let left = Evidence {
-        traced: &phi,
-        stderr: &stderr,
-        left_out: Some(if unseen { &nothing } else { &flags }),
-        eliminated: Some(&eliminated),
-        ..evidence
-    };
-    let (mut agreement, z) = agree(left, test, derivatives);
-    agreement.other_light = other;
-    agreement.gains = gains.as_ref().map(Gains::of);
-    if let Some([s, stderr, _]) = scale {
-        (agreement.best_scale, agreement.best_scale_stderr) = (s, stderr);
-    }
-    Ok((agreement, z))
 }

@@ -6,9 +6,9 @@ use super::agreement::{Agreement, Entry, EntryBound, VAGUE, share};
 use super::certainty::fits_better;
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
 use super::gains::words;
+use super::grounds::FEWEST;
 use super::score::{Deviation, Score};
 use super::summary::{facts, percent};
-use super::validation::FEWEST;
 use crate::num::digits::{figure, significant};
 
 /// Part of the noise up to which bounds of the model change no χ² to speak of.

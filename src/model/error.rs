@@ -3,7 +3,7 @@
 use crate::num::linalg::LinalgError;
 
 /// Why a scene has no matrix model.
-#[derive(Debug, thiserror::Error, PartialEq)]
+#[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum ModelError {
     /// Nothing is hidden.
     #[error(

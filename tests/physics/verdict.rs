@@ -183,8 +183,20 @@ pub(super) fn deviant(name: &str, size: f64) -> Option<Scene> {
 fn light_with(name: &str, size: f64) -> Option<Matrix> {
     match name {
         "offset of all entries" => Some(right().add_scalar(0.01 * size * right().mean())),
+        "one photograph alone, scale" => Some(spot_3(right() * (0.01 * size))),
+        "one photograph alone, offset" => {
+            let dark = 0.01 * size * right().mean();
+            Some(spot_3(right().map(|_| dark)))
+        }
         _ => deviant(name, size).as_ref().map(truth),
     }
+}
+
+/// Light with so much more under spot 3.
+fn spot_3(more: Matrix) -> Matrix {
+    let mut light = right().clone();
+    light.set_column(3, &(right().column(3) + more.column(3)));
+    light
 }
 
 pub(super) const ALL: [Errors; 3] = [Errors::Independent, Errors::WithinRows, Errors::Everywhere];
@@ -268,8 +280,10 @@ fn a_large_deviation_is_followed_to_its_size() {
         ("scale of the view", 20.0),
         ("camera and laser, off the wall", 3.0),
         ("one spot alone, x", 0.4),
+        ("one photograph alone, scale", 100.0),
+        ("one photograph alone, offset", 5.0),
     ] {
-        let light = truth(&deviant(name, size).unwrap());
+        let light = light_with(name, size).unwrap();
         let found = tested(&scene, &traced(&light, errors, 1), errors, 1e-3);
         let own = score(&found);
         let first = &own.likely[0];

@@ -65,6 +65,8 @@ pub struct Calibration {
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.
     pub replicates: Option<u32>,
+    /// How many times too small the errors are for that, where it is much.
+    pub too_small: Option<f64>,
     /// Which entries share their errors, where they do.
     pub shared: Option<&'static str>,
     /// Whether the stated noise follows from the noisy entries, and what light to expect in these

@@ -5,9 +5,10 @@ mod picture;
 mod tables;
 
 use super::{Calibrated, Calibration};
-use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, hang_together, neighbours_share};
+use crate::lab::certainty::{
+    FOLLOWS_ENTRIES, fits_better, hang_together, neighbours_share, times_too_small,
+};
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
-use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::{figure, perhaps};
 use crate::recovery::ErrorField;
@@ -180,10 +181,10 @@ impl Calibration {
 
     /// That the stated noise is an estimate, where that matters.
     fn few_replicates(&self) -> Option<String> {
-        let few = self.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
+        let (few, times) = (self.replicates?, times_too_small(self.too_small?));
         Some(format!(
             "The stated noise is known as from {few} replicates, pooled over pixels and spots as far as \
-             they say more, and the errors take it for known: they are TOO SMALL. Take more."
+             they say more, and the errors take it for known: they are {times}. Take more."
         ))
     }
 

@@ -148,6 +148,7 @@ impl CalibrationPlan {
             finer_elements: elements,
             untold,
             replicates: known.replicates.filter(|_| is_noise_known),
+            too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),
             follows_entries: known.follows_entries,
             neighbours,

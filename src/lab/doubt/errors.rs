@@ -1,6 +1,6 @@
 //! Standard errors, bands and probabilities that say less than they seem to.
 
-use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, neighbours_share};
+use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, neighbours_share, times_too_small};
 use crate::lab::fit::{Fit, Judged};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::num::digits::{figure, significant};
@@ -29,7 +29,7 @@ pub(super) fn shared(judged: &Judged) -> Option<String> {
 /// Errors of the picture that take those of the photographs for known, where they are not.
 pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<String> {
     let known = judged.certainty?;
-    let replicates = known.replicates.filter(|n| *n < ENOUGH_REPLICATES)?;
+    let (replicates, times) = (known.replicates?, known.too_small()?);
     let estimated = if known.pooled_from.is_some() {
         "even pooled over pixels and spots, are known as"
     } else {
@@ -39,8 +39,9 @@ pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<Strin
     (stated && judged.shared().is_none()).then(|| {
         format!(
             "the standard errors of the photographs {estimated} from {replicates} replicates, and those of \
-             the picture, bands and probabilities take them for known: they are TOO SMALL. Take {ENOUGH_REPLICATES} \
-             replicates or more, or state one error for all that are alike (--noise RELATIVE)"
+             the picture, bands and probabilities take them for known: they are {}. Take {ENOUGH_REPLICATES} \
+             replicates or more, or state one error for all that are alike (--noise RELATIVE)",
+            times_too_small(times)
         )
     })
 }

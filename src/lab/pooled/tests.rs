@@ -196,6 +196,40 @@ fn right_light_is_as_improbable_as_is_said() {
     }
 }
 
+/// What is fitted with pooled weights w, as if these were known, has the variance Σ w²σ² over (Σ w)²
+/// and states 1/Σ w: how many times as much is said, without σ, to 1 % in the mean of 300 draws. σ²
+/// is a product, and scatters about it by a factor of 3; from 2, 3 and 8 photographs.
+#[test]
+fn errors_of_a_fit_by_pooled_weights_are_as_much_too_small_as_is_said() {
+    let (pixels, spots, draws) = (60, 40, 300);
+    let zero = Matrix::zeros(pixels, spots);
+    let product = Matrix::from_fn(pixels, spots, |p, l| {
+        (1.0 + p as f64 / 60.0) * (1.0 + (l % 7) as f64 / 7.0)
+    });
+    for (count, scatter) in [(2, 0.0), (2, 0.5), (3, 0.5), (8, 0.5)] {
+        let mut random = normal(11);
+        let (mut variance, mut said) = (0.0, 0.0);
+        for seed in 0..draws {
+            let sigma = product.map(|s| s * libm::exp(scatter * random()[0]));
+            let [_, stderr] = repeated(&zero, &sigma, count, 9000 + seed);
+            let pooled = Pooled::of(&stderr, from(count), None).unwrap();
+            let weights = pooled.stderr.map(|s| 1.0 / (s * s));
+            let squares = weights.component_mul(&sigma).norm_squared() / f64::from(count);
+            variance += squares / weights.sum();
+            said += pooled.certainty.pooled_from.unwrap().variance;
+        }
+        println!("{count} {scatter}: {} of {said}", variance / draws as f64);
+        let off = variance / said - 1.0;
+        assert!(off.abs() < 0.01, "{count} {scatter}: {off}");
+    }
+    // Not pooled, by Student's law: of 10 replicates ν/(ν − 4) = 9/5, of 5 no variance at all, of 32
+    // hardly more than 1.
+    let times = |n| from(n).too_small();
+    assert!((times(10).unwrap() - 1.8f64.sqrt()).abs() < 1e-15);
+    assert_eq!((times(5), times(32)), (Some(f64::INFINITY), None));
+    assert_eq!(Certainty::STATED.too_small(), None);
+}
+
 /// Right light of noise that is a product, its errors from 3 photographs: the verdict, and χ² of a
 /// recovery, reject no oftener than they say, within the binomial 99.9 % of 500 draws (the less
 /// often, for how far σ² is a product is learnt from these photographs too). Light 1.2 σ off in

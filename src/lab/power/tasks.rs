@@ -3,12 +3,12 @@
 use super::results::{Power, PowerPlan};
 use super::verdicts::{Models, Verdicts, row, verdicts};
 use crate::lab::certainty::Certainty;
+use crate::lab::derivatives::SceneDerivatives;
 use crate::lab::error::LabError;
 use crate::lab::evidence::Test;
 use crate::lab::options::Opt;
 use crate::lab::problem::lit;
 use crate::lab::registered::{Registered, prepared};
-use crate::lab::seldom::Seldom;
 use crate::lab::study::{Sharing, Study, Work};
 use crate::lab::unmodelled::unmodelled;
 use crate::matrix::Matrix;
@@ -142,10 +142,21 @@ impl Study for PowerTasks {
             (name, size, model)
         };
         let wrong = wrong.map(sized).collect();
+        let share = integral.visible.map(|visible| visible.share);
+        let off = SceneDerivatives::new(
+            &self.scene,
+            Kernel::Physical,
+            integral.rough,
+            &right,
+            share.as_ref(),
+        );
+        let slopes = (0..off.parameters.len()).map(|k| off.of(k)).collect();
         Ok(Models {
+            slopes,
+            parameters: off.parameters,
             right,
             bound: integral.bound,
-            share: integral.visible.map(|visible| visible.share),
+            share,
             wrong,
         })
     }
@@ -166,10 +177,7 @@ impl Study for PowerTasks {
         };
         let spots = 0..self.scene.laser.spots.len();
         let traced = render(&self.scene, &how, spots, control)?;
-        let share = models.share.as_ref();
-        let of = |share| Seldom::new(&self.scene, Kernel::Physical, share, test.known);
-        let seldom = share.map(of).transpose()?.flatten();
-        Ok(verdicts(&traced, models, test, seldom.as_ref()))
+        verdicts(&self.scene, &traced, models, test)
     }
 
     fn fits(&self, models: &Models, _: usize, part: &Verdicts) -> bool {
@@ -230,6 +238,7 @@ mod tests {
     use crate::lab::study::tests::{divides, refuses, small};
     use crate::lab::{Against, Integration, Measured, validate};
     use crate::model::Occlusion;
+    use crate::num::statistics::sidak_threshold;
     use crate::num::stream::Sampling;
     use crate::transport::Traced;
 
@@ -255,12 +264,7 @@ mod tests {
         refuses(&tasks, 0, &verdicts);
     }
 
-    /// Photographs of a right model past small plates that few paths meet: by the scatter of blocks
-    /// alone most of 20 draws are rejected at 1 %, with what such shadows add one at most, by the
-    /// same χ² as `validate` has.
-    #[test]
-    fn shadows_that_few_paths_meet_are_allowed_for() {
-        let scene = bench(&[[3.6, 4.0, 2.0], [5.2, 6.1, 2.5]]);
+    fn models(scene: &Scene) -> Models {
         let plan = PowerPlan {
             estimators: vec![Estimator::Independent],
             sampling: Sampling::Sobol,
@@ -269,16 +273,27 @@ mod tests {
             first_seed: 1,
             significance: 0.01,
         };
-        let models = PowerTasks::new(&scene, plan);
-        let models = models.context(Control::none()).unwrap();
-        let share = models.share.as_ref().unwrap();
-        let free = converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED);
-        let (free, taken) = (free.unwrap().phi, share.map(|left| 1.0 - left));
-        let test = Test {
+        let tasks = PowerTasks::new(scene, plan);
+        tasks.context(Control::none()).unwrap()
+    }
+
+    fn test(paths: Option<u64>) -> Test {
+        Test {
             significance: 0.01,
-            known: certainty(Some(PATHS)),
-        };
-        let seldom = Seldom::new(&scene, Kernel::Physical, share, test.known).unwrap();
+            known: certainty(paths),
+        }
+    }
+
+    /// Photographs of a right model past small plates that few paths meet: by the scatter of blocks
+    /// alone most of 20 draws are rejected at 1 %, with what such shadows add one at most; and each
+    /// verdict, of the right model and of wrong ones, is that of `validate`.
+    #[test]
+    fn verdicts_are_those_of_validate() {
+        let scene = bench(&[[3.6, 4.0, 2.0], [5.2, 6.1, 2.5]]);
+        let models = models(&scene);
+        let taken = models.share.as_ref().unwrap().map(|left| 1.0 - left);
+        let free = converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED);
+        let free = free.unwrap().phi;
         let against = Against {
             kernel: Kernel::Physical,
             integration: Integration::Quadrature,
@@ -293,16 +308,41 @@ mod tests {
                 flux,
                 stderr,
             };
-            let by = |seldom| verdicts(&traced, &models, test, seldom);
-            let [without, with] = [None, seldom.as_ref()].map(by);
-            rejected[0] += u32::from(!without.agrees);
-            rejected[1] += u32::from(!with.agrees);
-            let measured = Measured::new(&traced.flux, &traced.stderr, None);
-            let found = validate(&scene, measured, against, test).unwrap().agreement;
-            if !without.agrees && found.seldom > 0 {
-                assert_eq!(with.chi2_per_dof, found.chi2_per_dof, "{seed}");
+            for (paths, rejected) in [None, Some(PATHS)].into_iter().zip(&mut rejected) {
+                let own = verdicts(&scene, &traced, &models, test(paths)).unwrap();
+                *rejected += u32::from(!own.agrees);
+                let measured = Measured::new(&traced.flux, &traced.stderr, None);
+                let found = validate(&scene, measured, against, test(paths)).unwrap();
+                let found = found.agreement;
+                assert_eq!(
+                    (own.agrees, own.chi2_per_dof),
+                    (found.agrees, found.chi2_per_dof),
+                    "{seed}"
+                );
             }
         }
         assert!(rejected[0] >= 15 && rejected[1] <= 1, "{rejected:?}");
+    }
+
+    /// Light without noise, with errors ε = 1e-2 of each of n entries: of a scale that is off by s
+    /// z = s √n/ε, and it is told from the limit for parameters of the scene, at a sixth of the
+    /// level. An entry alone or χ² would tell ten times as much.
+    #[test]
+    fn a_scale_is_told_by_all_entries_together() {
+        let scene = bench(&[]);
+        let models = models(&scene);
+        let entries = models.right.len() as f64;
+        let stderr = &models.right * 1e-2;
+        let traced = Traced {
+            bounces: Vec::new(),
+            tails: stderr.map(|_| 0.0),
+            flux: models.right.clone(),
+            stderr,
+        };
+        let own = verdicts(&scene, &traced, &models, test(None)).unwrap();
+        let limit = sidak_threshold(0.01 / 6.0, models.parameters.len() as u64);
+        let expected = 1e-2 * limit / entries.sqrt();
+        let off = own.smallest_scale / expected;
+        assert!(own.agrees && (0.95..1.15).contains(&off), "{off}");
     }
 }

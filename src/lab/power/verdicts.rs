@@ -3,11 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::results::{Detection, PowerPlan, PowerRow};
-use crate::lab::agreement::agree;
-use crate::lab::evidence::{Evidence, Test};
-use crate::lab::seldom::Seldom;
+use crate::lab::error::LabError;
+use crate::lab::evidence::Test;
+use crate::lab::grounds::{Basis, Grounds};
+use crate::lab::score::{Derivatives, Parameter};
+use crate::lab::validation::Measured;
 use crate::matrix::Matrix;
+use crate::model::Kernel;
 use crate::num::statistics::binomial_interval;
+use crate::scene::Scene;
 use crate::transport::{Estimator, Traced};
 
 /// The right model and wrong ones, each with what is wrong and ‖wrong − right‖/‖right‖.
@@ -18,6 +22,9 @@ pub struct Models {
     pub(super) bound: Matrix,
     /// What of each entry is visible where something stands in the way.
     pub(super) share: Option<Matrix>,
+    /// What may be off in the scene, and ∂Φ/∂θ of each.
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) slopes: Vec<Option<Matrix>>,
     pub(super) wrong: Vec<(String, f64, Matrix)>,
 }
 
@@ -32,41 +39,43 @@ pub struct Verdicts {
     pub(super) smallest_scale: f64,
 }
 
-/// Tests a render against every model as `validate` does, with shadows that are `seldom` met.
+/// Tests a render of `scene` against every model as `validate` does, by the derivatives of the right
+/// one.
+///
+/// # Errors
+/// [`LabError`].
 pub(super) fn verdicts(
+    scene: &Scene,
     traced: &Traced,
     models: &Models,
     test: Test,
-    seldom: Option<&Seldom>,
-) -> Verdicts {
-    let verdict = |model: &Matrix| {
-        let by = |stderr: &Matrix| {
-            let evidence = Evidence {
-                traced: &traced.flux,
-                stderr,
-                model,
-                bound: Some(&models.bound),
-                left_out: None,
-                eliminated: None,
-            };
-            agree(evidence, test, None).0
-        };
-        let own = by(&traced.stderr);
-        let seldom = seldom.filter(|_| !own.agrees);
-        let added = seldom.map(|seldom| seldom.added_to(&traced.stderr, model));
-        match added.filter(|(_, entries)| *entries > 0) {
-            Some((stderr, _)) => by(&stderr),
-            None => own,
-        }
+) -> Result<Verdicts, LabError> {
+    let basis = Basis {
+        scene,
+        kernel: Kernel::Physical,
+        bound: &models.bound,
+        share: models.share.as_ref(),
+        derivatives: Derivatives {
+            parameters: &models.parameters,
+            of: &|index| models.slopes[index].clone(),
+            // Causes need not be followed to be beyond their limits.
+            moved: &|_, _| None,
+        },
     };
-    let own = verdict(&models.right);
+    let measured = Measured::new(&traced.flux, &traced.stderr, None);
+    let grounds = Grounds::new(&basis, measured, test);
+    let verdict = |model: &Matrix| Ok::<_, LabError>(grounds.verdict(model)?.0);
+    let rejects = |model: &Matrix| Ok(!verdict(model)?.agrees);
+    let own = verdict(&models.right)?;
     let wrong = models.wrong.iter();
-    Verdicts {
+    Ok(Verdicts {
         chi2_per_dof: own.chi2_per_dof,
         agrees: own.agrees,
-        rejected: wrong.map(|(.., model)| !verdict(model).agrees).collect(),
-        smallest_scale: smallest_scale(|scale| !verdict(&(&models.right * scale)).agrees),
-    }
+        rejected: wrong
+            .map(|(.., model)| rejects(model))
+            .collect::<Result<_, LabError>>()?,
+        smallest_scale: smallest_scale(|scale| rejects(&(&models.right * scale)))?,
+    })
 }
 
 /// Counts over the seeds.
@@ -102,24 +111,24 @@ pub(super) fn row(
 }
 
 /// Smallest s for which 1 + s is rejected, to a tenth of its size; 0 if the right model is.
-fn smallest_scale(rejects: impl Fn(f64) -> bool) -> f64 {
-    if rejects(1.0) {
-        return 0.0;
+fn smallest_scale<E>(rejects: impl Fn(f64) -> Result<bool, E>) -> Result<f64, E> {
+    if rejects(1.0)? {
+        return Ok(0.0);
     }
     let mut high = 1e-6;
-    while high < 1.0 && !rejects(1.0 + high) {
+    while high < 1.0 && !rejects(1.0 + high)? {
         high *= 2.0;
     }
     let mut low = 0.5 * high;
     while high > 1.1 * low {
         let middle = 0.5 * (low + high);
-        if rejects(1.0 + middle) {
+        if rejects(1.0 + middle)? {
             high = middle;
         } else {
             low = middle;
         }
     }
-    high
+    Ok(high)
 }
 
 #[cfg(test)]
@@ -129,12 +138,12 @@ mod tests {
     #[test]
     fn the_threshold_is_found() {
         for limit in [1e-5, 3.3e-3, 0.2] {
-            let found = smallest_scale(|s| s > 1.0 + limit);
+            let found = smallest_scale(|s| Ok::<_, ()>(s > 1.0 + limit)).unwrap();
             assert!(
                 found >= limit && found <= 1.11 * limit,
                 "{found} for {limit}"
             );
         }
-        assert_eq!(smallest_scale(|_| true), 0.0);
+        assert_eq!(smallest_scale(|_| Ok::<_, ()>(true)), Ok(0.0));
     }
 }

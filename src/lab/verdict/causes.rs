@@ -77,8 +77,8 @@ impl Score {
         )
     }
 
-    /// Sizes from which deviations are seen 95 times in 100, those of the scene and the least seen
-    /// of single spots.
+    /// Sizes from which deviations are seen 95 times in 100, those of the scene and, of single
+    /// spots, the least seen shift and scale.
     pub(in crate::lab) fn detectable(&self) -> String {
         let told = |d: &Deviation| {
             if d.is_within_reach(d.detectable) {
@@ -98,10 +98,11 @@ impl Score {
             .deviations
             .iter()
             .filter(|d| wanted.contains(&d.name.as_str()) || d.name.ends_with(".normal"));
-        let least_seen = self
-            .spots
-            .iter()
-            .reduce(|a, b| if b.detectable > a.detectable { b } else { a });
+        let of_one = ["one spot alone, ", "one photograph alone, scale"];
+        let least_seen = of_one.iter().filter_map(|name| {
+            let own = self.spots.iter().filter(|d| d.name.starts_with(name));
+            own.reduce(|a, b| if b.detectable > a.detectable { b } else { a })
+        });
         let all: Vec<String> = of_scene.chain(least_seen).map(told).collect();
         listed(&all)
     }

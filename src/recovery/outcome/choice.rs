@@ -51,9 +51,9 @@ pub enum Choice {
     },
     /// The likeliest of all that count, each by its evidence: the picture is their mean.
     Averaged {
-        /// By how many times larger than its standard errors the picture's own, as a root mean
-        /// square, would be were neighbours not alike; none where the photographs speak against
-        /// that.
+        /// √ of the mean over the elements of E(ρ − ρ̂)²/σ², σ the standard errors, were
+        /// neighbours not alike: how many times too small these then are. None where the
+        /// photographs speak against that.
         if_unalike: Option<f64>,
     },
     /// Estimated together with the reflectances.

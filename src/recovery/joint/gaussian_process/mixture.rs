@@ -132,6 +132,13 @@ fn interval(parts: &[(f64, DVector<f64>, DVector<f64>)], j: usize, confidence: f
     })
 }
 
+/// The mean of a_j/b_j, of those that have a b.
+fn mean_ratio(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+    let ratios = a.iter().zip(b.iter()).filter(|(_, b)| **b > 0.0);
+    let (sum, count) = ratios.fold((0.0, 0.0), |(sum, n), (a, b)| (sum + a / b, n + 1.0));
+    if count > 0.0 { sum / count } else { 1.0 }
+}
+
 impl Seen {
     pub(super) fn mixture(
         &self,
@@ -198,7 +205,7 @@ impl Seen {
         }
         let variance = all.variance();
         let if_unalike = (unalike.weight > NOT_EXCLUDED)
-            .then(|| (unalike.square_about(&all.mean).mean() / variance.mean()).sqrt());
+            .then(|| mean_ratio(&unalike.square_about(&all.mean), &variance).sqrt());
         let bands = confidence.map(|confidence| Bands {
             confidence,
             intervals: (0..n).map(|j| interval(&parts, j, confidence)).collect(),

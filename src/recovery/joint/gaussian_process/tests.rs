@@ -61,6 +61,85 @@ fn one_element_by_hand() {
     }
 }
 
+/// Two neighbours, of which three photographs tell the sum well and the difference badly: mean,
+/// errors and how many times these are too small were the two not alike, by a sum over all
+/// priors, of normal distributions of two variables. How far the picture is from that of neighbours
+/// that are not alike makes three hundredths of it.
+#[test]
+fn two_elements_by_hand() {
+    let d = DMatrix::from_element(2, 1, 1.0);
+    let k = |length: f64, tau: f64, own: f64| {
+        let alike = (1.0 - own) * libm::exp(-1.0 / length);
+        DMatrix::from_fn(2, 2, |i, j| {
+            0.25 + tau * tau * if i == j { 1.0 } else { alike }
+        })
+    };
+    for (sigma, unlike, apart) in [(0.3, 0.5, 1.2), (0.1, 0.2, 0.8)] {
+        let [more, less] = [1.0 + unlike, 1.0 - unlike];
+        let c = DMatrix::from_column_slice(3, 2, &[1.0, less, more, 1.0, more, less]);
+        let stderr = DMatrix::from_element(3, 1, sigma);
+        let truth = [0.5 + 0.5 * apart, 0.5 - 0.5 * apart];
+        let phi = &c * DMatrix::from_column_slice(2, 1, &truth);
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        let found = gp(&problem, &Options::default());
+        // Weight, mean and covariance of each prior.
+        let left = &phi - &c * DMatrix::from_element(2, 1, 0.5);
+        let of = |length: f64, tau: f64, own: f64, prior: f64| {
+            let k = k(length, tau, own);
+            let s = &c * &k * c.transpose() + DMatrix::identity(3, 3) * (sigma * sigma);
+            let inverse = s.clone().try_inverse().unwrap();
+            let gain = &k * c.transpose() * &inverse;
+            let chi2 = (left.transpose() * &inverse * &left)[(0, 0)];
+            let weight = prior * libm::exp(-0.5 * chi2) / s.determinant().sqrt();
+            let mean = (&gain * &left).add_scalar(0.5);
+            (weight, mean, &k - &gain * &c * &k)
+        };
+        let mut all = vec![of(1.0, 0.0, 0.0, 0.02)];
+        // Lengths from 0.4 to 8 distances at least, in steps of ½ of the logarithm.
+        for length in (0..7).map(|k| 0.4 * libm::exp(0.5 * f64::from(k))) {
+            let normal = |z: f64| libm::exp(-0.5 * (z / 0.98).powi(2));
+            let steps: Vec<f64> = (-90..=90).map(|step| 0.035 * f64::from(step)).collect();
+            let sum: f64 = steps.iter().map(|z| normal(*z)).sum();
+            for own in [0.0, 0.1, 0.3] {
+                for z in &steps {
+                    let prior = 0.98 * normal(*z) / (sum * 21.0);
+                    all.push(of(length, libm::exp(z - 2.13), own, prior));
+                }
+            }
+        }
+        let moments = |some: &[(f64, DMatrix<f64>, DMatrix<f64>)]| {
+            let weight: f64 = some.iter().map(|part| part.0).sum();
+            let mean = some.iter().map(|(w, m, _)| m * (w / weight));
+            let square = some
+                .iter()
+                .map(|(w, m, v)| (m * m.transpose() + v) * (w / weight));
+            let mean = mean.fold(DMatrix::zeros(2, 1), |sum, x| sum + x);
+            (mean, square.fold(DMatrix::zeros(2, 2), |sum, x| sum + x))
+        };
+        let (mean, square) = moments(&all);
+        // After the flat one, the shortest length: three times 181.
+        let (apart, apart_square) = moments(&all[1..1 + 3 * 181]);
+        let mut ratio = 0.0;
+        for j in 0..2 {
+            let variance = square[(j, j)] - mean[j] * mean[j];
+            let sd = variance.sqrt();
+            assert!(
+                (found.reflectance[j] - mean[j]).abs() < 3e-3 * sd,
+                "{truth:?}"
+            );
+            assert!((found.standard_error.as_ref().unwrap()[j] / sd - 1.0).abs() < 3e-3);
+            let about = apart_square[(j, j)] - 2.0 * mean[j] * apart[j] + mean[j] * mean[j];
+            ratio += 0.5 * about / variance;
+        }
+        let Choice::Averaged { if_unalike } = found.choice else {
+            panic!("{:?}", found.choice)
+        };
+        let times = if_unalike.unwrap();
+        let off = times / ratio.sqrt() - 1.0;
+        assert!(off.abs() < 3e-3, "{truth:?}: {times} {off}");
+    }
+}
+
 /// A picture of 5 × 5 elements as the method takes pictures to be.
 fn drawn(normal: &mut impl FnMut() -> f64, tau: f64, length: f64, own: f64) -> DVector<f64> {
     let distance = |i: usize, j: usize| {

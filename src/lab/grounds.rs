@@ -1,0 +1,154 @@
+//! What a model of a scene is tested on.
+
+use std::sync::OnceLock;
+
+use super::agreement::{Agreement, agree};
+use super::certainty::FOLLOWS_ENTRIES;
+use super::evidence::{Evidence, Test};
+use super::gains::Gains;
+use super::other_light::Left;
+use super::refined::Refined;
+use super::score::Derivatives;
+use super::seldom::Seldom;
+use super::validation::{Measured, ValidationError};
+use crate::matrix::Matrix;
+use crate::model::{Kernel, ModelError};
+use crate::num::statistics::sidak_threshold;
+use crate::recovery::{Nuisance, RecoveryError};
+use crate::scene::Scene;
+
+/// Replicates from which errors are known well enough for deviations of the scene to be fitted.
+pub(super) const FEWEST: u32 = 6;
+
+/// What of a scene its model is tested by, the same for every model of it.
+pub(super) struct Basis<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Kernel of the model.
+    pub kernel: Kernel,
+    /// What the model may be off by, pixels × spots, W.
+    pub bound: &'a Matrix,
+    /// What of each entry is visible, where something stands in the way.
+    pub share: Option<&'a Matrix>,
+    /// What may be off in the scene.
+    pub derivatives: Derivatives<'a>,
+}
+
+/// Photographs with what models are tested by.
+pub(super) struct Grounds<'a> {
+    basis: &'a Basis<'a>,
+    measured: Measured<'a>,
+    refined: Refined<'a>,
+    test: Test,
+    seldom: OnceLock<Result<Option<Seldom>, ModelError>>,
+}
+
+impl<'a> Grounds<'a> {
+    /// Standard errors from few replicates are pooled over pixels and spots where these say more.
+    pub(super) fn new(basis: &'a Basis<'a>, measured: Measured<'a>, test: Test) -> Self {
+        let left_out = measured.beside.left_out;
+        let refined = Refined::of(measured.phi, measured.stderr, test.known, left_out);
+        let known = refined.certainty;
+        Self {
+            basis,
+            measured,
+            refined,
+            test: Test { known, ..test },
+            seldom: OnceLock::new(),
+        }
+    }
+
+    /// The verdict on a model, W, and z of every entry. Where it is refused, and something stands in
+    /// the way, with an allowance for shadows that few paths meet.
+    ///
+    /// # Errors
+    /// [`ValidationError`].
+    pub(super) fn verdict(&self, model: &Matrix) -> Result<(Agreement, Matrix), ValidationError> {
+        let (mut agreement, mut z) = self.by(&self.refined.stderr, model)?;
+        if let (true, false, Some(share)) = (agreement.evidence, agreement.agrees, self.basis.share)
+        {
+            let of = || Seldom::new(self.basis.scene, self.basis.kernel, share, self.test.known);
+            if let Some(seldom) = self.seldom.get_or_init(of).as_ref().map_err(Clone::clone)? {
+                let (stderr, entries) = seldom.added_to(&self.refined.stderr, model);
+                if entries > 0 {
+                    (agreement, z) = self.by(&stderr, model)?;
+                    agreement.seldom = entries;
+                }
+            }
+        }
+        agreement.pooled = self.test.known.pooled();
+        if self.test.known.follows_entries {
+            agreement.unmodelled.push(FOLLOWS_ENTRIES.to_owned());
+        }
+        Ok((agreement, z))
+    }
+
+    /// The verdict by standard errors, W.
+    fn by(&self, stderr: &Matrix, model: &Matrix) -> Result<(Agreement, Matrix), ValidationError> {
+        let Measured { phi, beside, .. } = self.measured;
+        let evidence = Evidence {
+            traced: phi,
+            stderr,
+            model,
+            bound: Some(self.basis.bound),
+            left_out: beside.left_out,
+            eliminated: None,
+        };
+        // Below, a variance has no variance itself, and no fit a known error.
+        let replicates = self.test.known.replicates;
+        let derivatives = replicates.is_none_or(|n| n >= FEWEST);
+        let derivatives = derivatives.then_some(&self.basis.derivatives);
+        if beside.estimates() {
+            beside_other_light(evidence, self.test, &beside, derivatives)
+        } else {
+            Ok(agree(evidence, self.test, derivatives))
+        }
+    }
+}
+
+/// Agreement of the model with what is left of light when what is beside it was fitted and taken
+/// out.
+fn beside_other_light(
+    evidence: Evidence<'_>,
+    test: Test,
+    beside: &Nuisance<'_>,
+    derivatives: Option<&Derivatives<'_>>,
+) -> Result<(Agreement, Matrix), ValidationError> {
+    // An entry without a known error has no weight in a fit.
+    let counts = |at: usize| evidence.counts(at) && evidence.stderr[at] > 0.0;
+    let (rows, columns) = evidence.model.shape();
+    let flags = Matrix::from_fn(rows, columns, |p, l| {
+        f64::from(u8::from(!counts(p + l * rows)))
+    });
+    let evidence = Evidence {
+        left_out: Some(&flags),
+        ..evidence
+    };
+    if !flags.iter().any(|flag| *flag == 0.0) {
+        return Ok(agree(evidence, test, None));
+    }
+    let Left {
+        phi,
+        stderr,
+        scale,
+        other,
+        gains,
+        eliminated,
+    } = Left::of(&evidence, test, beside)?.ok_or(RecoveryError::TakenUp)?;
+    let unseen = scale.is_some_and(|[_, _, z]| z <= sidak_threshold(test.significance, 1));
+    let nothing = Matrix::from_element(rows, columns, 1.0);
+    let left = Evidence {
+        traced: &phi,
+        stderr: &stderr,
+        left_out: Some(if unseen { &nothing } else { &flags }),
+        eliminated: Some(&eliminated),
+        ..evidence
+    };
+    let (mut agreement, z) = agree(left, test, derivatives);
+    agreement.other_light = other;
+    agreement.gains = gains.as_ref().map(Gains::of);
+    if let Some([s, stderr, _]) = scale {
+        (agreement.best_scale, agreement.best_scale_stderr) = (s, stderr);
+    }
+    Ok((agreement, z))
+}
