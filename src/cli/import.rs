@@ -257,7 +257,16 @@ fn summary(account: &ImportAccount, has_noise: bool, dir: &Path) -> String {
             let read = if noise.has_offset {
                 "read noise not told (no dark frames)".to_owned()
             } else {
-                format!("read noise {:.3} counts", noise.read_variance.sqrt())
+                let (read, error) = (noise.read_variance.sqrt(), line.read_variance_error);
+                // σ² is what the line tells: near 0 only up to where σ may be is known.
+                if noise.read_variance > error {
+                    format!("read noise {read:.3} ± {:.3} counts", 0.5 * error / read)
+                } else {
+                    format!(
+                        "read noise below {:.3} counts",
+                        (noise.read_variance + 2.0 * error).sqrt()
+                    )
+                }
             };
             let _ = writeln!(
                 text,

@@ -135,7 +135,8 @@ pub(super) fn share(significance: f64, deviations: bool) -> f64 {
 /// `bound` of the model is taken off |traced − model| first. Two tests share the significance level
 /// equally, three where there are `derivatives`:
 ///
-/// * the largest |z| against the Šidák limit for all entries;
+/// * the largest |z| against the Šidák limit for all entries, where these are of counts as of a
+///   skewed law ([`Counted`](super::counted::Counted));
 /// * χ² = Σz². Under [`Errors::WithinRows`] the z of a row move together, but rows are independent:
 ///   the scatter of the row sums tells how many independent entries Σz² amounts to (Satterthwaite),
 ///   between the number of rows and that of entries. Under [`Errors::Everywhere`] it counts as one
@@ -155,7 +156,7 @@ pub fn agree(
 ) -> (Agreement, Matrix) {
     let (rows, columns) = evidence.model.shape();
     let deviate = |at: usize, model: f64| deviate(&evidence, test, at, model);
-    let z = Matrix::from_fn(rows, columns, |p, l| {
+    let each = Matrix::from_fn(rows, columns, |p, l| {
         let at = p + l * rows;
         if evidence.counts(at) {
             deviate(at, evidence.model[at])
@@ -163,18 +164,19 @@ pub fn agree(
             0.0
         }
     });
+    let z = each.zip_map(evidence.stderr, |z, s| test.known.of_counts(z, s));
     let counted: Vec<usize> = (0..z.len()).filter(|i| evidence.counts(*i)).collect();
     let entries = counted.len();
     let lit = |i: &usize| evidence.traced[*i] != 0.0 || evidence.model[*i] != 0.0;
     let fitted = evidence.eliminated.map_or(0, Eliminated::freedom);
     let evident = counted.iter().any(lit) && entries > fitted;
     let largest = z.amax();
-    let squares = z.norm_squared();
+    let squares = each.norm_squared();
     let free = entries.saturating_sub(fitted).max(1) as f64;
     let chi2_per_dof = squares / free;
     let dof = match test.known.errors {
         Errors::Independent => test.known.of_chi2(free),
-        Errors::WithinRows => effective_freedom(&z, entries) * free / entries.max(1) as f64,
+        Errors::WithinRows => effective_freedom(&each, entries) * free / entries.max(1) as f64,
         Errors::Everywhere => 1.0,
     };
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
@@ -185,7 +187,7 @@ pub fn agree(
         let own = own.filter(|i| evidence.counts(*i));
         let change = own.map(|i| {
             let after = deviate(i, evidence.model[i] + theta * d[i]);
-            after * after - z[i] * z[i]
+            after * after - each[i] * each[i]
         });
         (squares + change.sum::<f64>()) / free
     };
@@ -231,10 +233,10 @@ pub fn agree(
         best_scale: 1.0 + scale.map_or(0.0, |s| s.value),
         best_scale_stderr: scale.map_or(0.0, |s| s.stderr),
         pixels: (0..rows)
-            .map(|p| mean_square(&evidence, &z, (0..columns).map(|l| p + l * rows)))
+            .map(|p| mean_square(&evidence, &each, (0..columns).map(|l| p + l * rows)))
             .collect(),
         spots: (0..columns)
-            .map(|l| mean_square(&evidence, &z, l * rows..(l + 1) * rows))
+            .map(|l| mean_square(&evidence, &each, l * rows..(l + 1) * rows))
             .collect(),
         score,
         worst: worst(&z, &evidence),

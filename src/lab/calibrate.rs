@@ -9,7 +9,8 @@
 //! if that is larger: u_c is what frame c, or one of 4 × 4 blocks of pixels, says where only the
 //! others are fitted ([`left_out`]), so that what the model lacks counts once a frame or block
 //! (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others following, falls by
-//! ½ farther out, that is the error. The picture's own covariance is P + (RX) cov θ (RX)ᵀ. What a
+//! ½ farther out, that is the error, and so is what priors of the picture say that the photographs
+//! do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov θ (RX)ᵀ. What a
 //! picture of twice as many elements along each side would move is an error too where the
 //! photographs ask for it, and so is what the next rule of integration would ([`rule`]).
 //!
@@ -54,6 +55,7 @@ mod finish;
 mod geometry;
 mod identified;
 mod left_out;
+mod other_pictures;
 mod picture;
 mod posterior;
 mod profile;
@@ -149,6 +151,7 @@ impl CalibrationPlan {
                 "every standard error is 0, so that no entry counts; give those of the photographs, or none where their noise is not known",
             ));
         }
+        photographs.check()?;
         let of = |own| Refined::of(photographs.phi, own, known, photographs.left_out);
         let refined = stderr.map(of);
         let known = refined.as_ref().map_or(known, |own| own.certainty);

@@ -1,8 +1,9 @@
 //! What is known of standard errors.
 
+use super::counted::Counted;
 use crate::num::digits::figure;
 use crate::num::named::named;
-use crate::num::statistics::{chi_square_sf, student_to_normal};
+use crate::num::statistics::{chi_square_sf, student_to_normal, unskewed};
 use crate::transport::{Estimator, Plan};
 
 named! {
@@ -107,6 +108,8 @@ pub struct Certainty {
     pub pooled_from: Option<PooledFrom>,
     /// Whether they follow from the noisy entries, and what light to expect in these is not known.
     pub follows_entries: bool,
+    /// Where they are those of counts.
+    pub counted: Option<Counted>,
 }
 
 impl Certainty {
@@ -121,6 +124,7 @@ impl Certainty {
             paths: None,
             pooled_from: None,
             follows_entries: false,
+            counted: None,
         }
     }
 
@@ -151,7 +155,8 @@ impl Certainty {
         freedom(self.replicates.unwrap_or(u32::MAX))
     }
 
-    /// The standard normal deviate as improbable as a deviate over a standard error.
+    /// The standard normal deviate as improbable as a deviate over a standard error, of noise that
+    /// is normal.
     pub(super) fn normal(self, t: f64) -> f64 {
         match self.replicates {
             Some(_) => student_to_normal(t, self.freedom()),
@@ -159,15 +164,36 @@ impl Certainty {
         }
     }
 
+    /// The standard error, W, of an entry of which this light is expected: of counts its own, not
+    /// that `given`.
+    pub(super) fn stderr(self, light: f64, given: f64) -> f64 {
+        let own = self.counted.filter(|_| given > 0.0);
+        own.and_then(|own| own.stderr(light)).unwrap_or(given)
+    }
+
+    /// The same of such a z, where the noise over this standard error, W, is that of counts.
+    pub(super) fn of_counts(self, z: f64, stderr: f64) -> f64 {
+        match self.counted.filter(|_| stderr > 0.0) {
+            Some(counted) => unskewed(z, counted.skewness(stderr)),
+            None => z,
+        }
+    }
+
     /// Degrees of freedom of the sum of so many squared deviates. Pooled errors share those of what
-    /// was pooled: of ν each the mean variance is known to 2/(ν N) of itself, and
+    /// was pooled: of ν each the mean variance is known to 2/(ν N) of itself; of counts the
+    /// variance of a square is 2 + κ:
     ///
-    /// > Var Σz²/N = 2/N (1 + 1/ν)
+    /// > Var Σz²/N = 2/N (1 + 1/ν),   2/N (1 + κ/2)
     pub(super) fn of_chi2(self, squares: f64) -> f64 {
         match self.pooled_from.map(|own| freedom(own.replicates)) {
             Some(own) => squares * own / (own + 1.0),
-            None => squares,
+            None => squares / (1.0 + 0.5 * self.excess()),
         }
+    }
+
+    /// κ of counts.
+    fn excess(self) -> f64 {
+        self.counted.map_or(0.0, |own| own.excess)
     }
 
     /// How many times too small errors are of what is fitted with weights of 1/s², as if the
@@ -188,7 +214,8 @@ impl Certainty {
     /// Probability of as large a sum χ² of squared deviates over standard errors by noise alone. Of
     /// errors of ν > 4 degrees of freedom each square is that of Student's t, of mean ν/(ν − 2) and
     /// variance 2 (ν − 1)/(ν − 4) times the square of that, of pooled ones that of
-    /// [`PooledFrom::squares`]: χ² is compared as one of that mean and variance.
+    /// [`PooledFrom::squares`], and of counts the variance 2 + κ: χ² is compared as one of that
+    /// mean and variance.
     pub(super) fn by_noise(self, chi2: f64, dof: f64) -> f64 {
         let nu = self.freedom();
         let [mean, fewer] = match (self.pooled_from, self.replicates) {
@@ -198,7 +225,7 @@ impl Certainty {
                 [square, dof / (each + 1.0 / freedom(own.replicates))]
             }
             (None, Some(_)) if nu > 4.0 => [nu / (nu - 2.0), dof * (nu - 4.0) / (nu - 1.0)],
-            (None, _) => [1.0, dof],
+            (None, _) => [1.0, self.of_chi2(dof)],
         };
         chi_square_sf(chi2 / dof / mean * fewer, fewer)
     }

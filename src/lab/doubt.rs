@@ -47,7 +47,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         impossible(found),
         undetermined(found, judged),
         unseen(found, judged),
-        alike_untold(found),
+        alike_untold(found, judged),
         few_directions(found),
         noise(found),
         on_bounds(found),

@@ -1,9 +1,11 @@
 //! What a model of a scene is tested on.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use super::agreement::{Agreement, agree};
-use super::certainty::FOLLOWS_ENTRIES;
+use super::certainty::{Certainty, FOLLOWS_ENTRIES};
+use super::counted::Counted;
 use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::other_light::Left;
@@ -44,7 +46,8 @@ pub(super) struct Grounds<'a> {
 }
 
 impl<'a> Grounds<'a> {
-    /// Standard errors from few replicates are pooled over pixels and spots where these say more.
+    /// Standard errors from few replicates are pooled over pixels and spots where these say more;
+    /// those of counts are by the light of each model.
     pub(super) fn new(basis: &'a Basis<'a>, measured: Measured<'a>, test: Test) -> Self {
         let left_out = measured.beside.left_out;
         let refined = Refined::of(measured.phi, measured.stderr, test.known, left_out);
@@ -64,12 +67,13 @@ impl<'a> Grounds<'a> {
     /// # Errors
     /// [`ValidationError`].
     pub(super) fn verdict(&self, model: &Matrix) -> Result<(Agreement, Matrix), ValidationError> {
-        let (mut agreement, mut z) = self.by(&self.refined.stderr, model)?;
+        let stderr = self.stderr(model);
+        let (mut agreement, mut z) = self.by(&stderr, model)?;
         if let (true, false, Some(share)) = (agreement.evidence, agreement.agrees, self.basis.share)
         {
             let of = || Seldom::new(self.basis.scene, self.basis.kernel, share, self.test.known);
             if let Some(seldom) = self.seldom.get_or_init(of).as_ref().map_err(Clone::clone)? {
-                let (stderr, entries) = seldom.added_to(&self.refined.stderr, model);
+                let (stderr, entries) = seldom.added_to(&stderr, model);
                 if entries > 0 {
                     (agreement, z) = self.by(&stderr, model)?;
                     agreement.seldom = entries;
@@ -81,6 +85,16 @@ impl<'a> Grounds<'a> {
             agreement.unmodelled.push(FOLLOWS_ENTRIES.to_owned());
         }
         Ok((agreement, z))
+    }
+
+    /// Standard errors, W, by this model: those of counts are of its light, of counts of none too.
+    fn stderr(&self, model: &Matrix) -> Cow<'_, Matrix> {
+        let Measured { phi, beside, .. } = self.measured;
+        let given = self.refined.stderr.as_ref();
+        match self.test.known.counted.filter(|_| !beside.estimates()) {
+            Some(counted) => Cow::Owned(counted.of_light(model, (phi, given))),
+            None => Cow::Borrowed(given),
+        }
     }
 
     /// The verdict by standard errors, W.
@@ -99,10 +113,15 @@ impl<'a> Grounds<'a> {
         let derivatives = replicates.is_none_or(|n| n >= FEWEST);
         let derivatives = derivatives.then_some(&self.basis.derivatives);
         if beside.estimates() {
-            beside_other_light(evidence, self.test, &beside, derivatives)
-        } else {
-            Ok(agree(evidence, self.test, derivatives))
+            return beside_other_light(evidence, self.test, &beside, derivatives);
         }
+        let counts = (0..phi.len()).filter(|at| evidence.counts(*at));
+        let of_model = |own: Counted| Counted::new(own.law, counts.map(|at| &stderr[at]));
+        let known = Certainty {
+            counted: self.test.known.counted.and_then(of_model),
+            ..self.test.known
+        };
+        Ok(agree(evidence, Test { known, ..self.test }, derivatives))
     }
 }
 
@@ -144,7 +163,14 @@ fn beside_other_light(
         eliminated: Some(&eliminated),
         ..evidence
     };
-    let (mut agreement, z) = agree(left, test, derivatives);
+    let known = Certainty {
+        counted: test
+            .known
+            .counted
+            .map(|own| own.over(scale.map_or(1.0, |s| s[0]))),
+        ..test.known
+    };
+    let (mut agreement, z) = agree(left, Test { known, ..test }, derivatives);
     agreement.other_light = other;
     agreement.gains = gains.as_ref().map(Gains::of);
     if let Some([s, stderr, _]) = scale {

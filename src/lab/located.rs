@@ -107,6 +107,7 @@ impl LocatedPlan {
         photographs: &Unexplained<'_>,
         control: Control<'_>,
     ) -> Result<Located, LabError> {
+        photographs.check()?;
         let altered = self.misplaced()?;
         if altered.is_of_the_picture(scene) {
             return Err(WITHIN_ITS_PLANE);
@@ -137,6 +138,13 @@ impl LocatedPlan {
         };
         let coarse = places(self.range, self.steps, false)?;
         if coarse.is_empty() {
+            let [from, to] = self.range;
+            let size = |k: usize| from + (to - from) * k as f64 / (self.steps - 1) as f64;
+            if (0..self.steps).any(|k| altered.apply(scene, size(k)).is_some()) {
+                return Err(LabError::Unsuited(
+                    "too few entries count to tell a place by; leave more in",
+                ));
+            }
             return Err(LabError::Unsuited(
                 "the scene allows no place between these two; an angle needs a hinge, and there is none where hidden surface and wall are parallel",
             ));

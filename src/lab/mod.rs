@@ -149,6 +149,7 @@ mod certainty;
 mod check;
 mod chosen;
 mod convergence;
+mod counted;
 mod coverage;
 mod derivatives;
 mod deviate;
@@ -231,6 +232,7 @@ pub use calibrate::{
 pub use certainty::{Certainty, Errors, PooledFrom};
 pub use chosen::{Beside, Chosen, Ended};
 pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
+pub use counted::Counted;
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use eliminated::Eliminated;
 pub use ensemble::{Estimate, Spread};

@@ -11,6 +11,7 @@ use std::borrow::Cow;
 use nalgebra::DVector;
 
 use super::certainty::Certainty;
+use super::counted::Counted;
 use super::pooled::Pooled;
 use crate::matrix::{Matrix, expected};
 use crate::num::linalg::Cholesky;
@@ -47,17 +48,23 @@ impl<'a> Refined<'a> {
     ) -> Self {
         if let Some(law) = Law::of(phi, stderr, left_out) {
             let light = expected(phi, &stderr.map(|s| s * s), left_out);
-            return match light.ok().flatten() {
-                Some(light) => Self {
-                    stderr: Cow::Owned(law.at(&light, (phi, stderr))),
-                    certainty,
-                },
-                None => Self {
-                    stderr: law.of_counts_of_none((phi, stderr), left_out),
-                    certainty: Certainty {
-                        follows_entries: true,
-                        ..certainty
-                    },
+            let light = light.ok().flatten();
+            let follows_entries = light.is_none();
+            let stderr = match light {
+                Some(light) => Cow::Owned(law.at(&light, (phi, stderr))),
+                None => law.of_counts_of_none((phi, stderr), left_out),
+            };
+            let at = stderr.iter().enumerate();
+            let counts = at.filter(|(at, _)| left_out.is_none_or(|out| out[*at] == 0.0));
+            let counted = Counted::new(law.powers(), counts.map(|(_, s)| s));
+            // Over errors of the noisy entries deviates are skewed the other way.
+            let counted = counted.filter(|_| !follows_entries);
+            return Self {
+                stderr,
+                certainty: Certainty {
+                    follows_entries: follows_entries || certainty.follows_entries,
+                    counted,
+                    ..certainty
                 },
             };
         }
@@ -163,6 +170,15 @@ impl Law {
         terms
             .map(|(power, factor)| factor * (x / self.unit).powi(*power))
             .sum()
+    }
+
+    /// The factors of 1, x and x².
+    fn powers(&self) -> [f64; 3] {
+        let mut all = [0.0; 3];
+        for (power, factor) in &self.terms {
+            all[*power as usize] += factor / self.unit.powi(*power);
+        }
+        all
     }
 
     /// The errors of this light; those given where it says nothing.

@@ -100,7 +100,8 @@ pub(super) fn score(
                 detectable: fit.detectable(limit),
                 reach: parameter.reach,
                 chi2_per_dof: remaining(fit.value, &d, &columns),
-                same: parameter.same.clone(),
+                // Albedos act on all photographs.
+                same: spot.map_or_else(|| parameter.same.clone(), |_| Vec::new()),
                 spot,
                 is_followed: false,
             })

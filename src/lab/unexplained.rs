@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use super::certainty::Certainty;
 use crate::matrix::Matrix;
 use crate::num::linalg::{LinalgError, product, svd, tr_product};
+use crate::recovery::RecoveryError;
 use crate::scene::Scene;
 
 /// Directions of the patterns that are weaker than this part of the strongest are none.
@@ -76,6 +77,25 @@ impl Unexplained<'_> {
             Some(_) => 0.0,
         };
         DVector::from_fn(self.phi.nrows(), |p, _| root(p))
+    }
+
+    /// Refuses photographs of which nothing counts, or nothing but darkness.
+    ///
+    /// # Errors
+    /// [`RecoveryError`].
+    pub(super) fn check(&self) -> Result<(), RecoveryError> {
+        let (mut any, mut lit) = (false, false);
+        for (l, column) in self.phi.column_iter().enumerate() {
+            for (x, root) in column.iter().zip(&self.roots(l)) {
+                any |= *root > 0.0;
+                lit |= *root > 0.0 && *x != 0.0;
+            }
+        }
+        match (any, lit) {
+            (false, _) => Err(RecoveryError::NothingCounts),
+            (_, false) => Err(RecoveryError::Dark),
+            _ => Ok(()),
+        }
     }
 
     /// Entries that count.

@@ -1,12 +1,14 @@
 //! Light that frames hold and the three-bounce model of a scene does not.
 
 use crate::geometry::{Interaction, Ray, ShapeId};
-use crate::scene::{Role, Scene, Spot, Warning};
+use crate::scene::{Role, Scene, Spot, Surface, Warning};
 
 /// Bounces of the model.
 const MODELLED: u32 = 3;
 /// Points of the view along each side at which light straight from a spot is looked for.
 const POINTS: usize = 3;
+/// And of a wall, at which it may be sent on.
+const ACROSS: usize = 9;
 
 /// What of it `scene` has, in words, none where it has none: of up to its largest number of
 /// bounces.
@@ -32,6 +34,13 @@ pub(super) fn unmodelled(scene: &Scene) -> Vec<String> {
             scene.laser.spots.len()
         ));
     }
+    let between = walls_that_light_the_view(scene);
+    if !between.is_empty() && scene.max_bounces >= MODELLED {
+        found.push(format!(
+            "light of three bounces that {} sends from the spots to the part of the wall that is seen",
+            between.join(", ")
+        ));
+    }
     let occluders = scene.surfaces.iter().filter(|s| s.role == Role::Occluder);
     let reflecting: Vec<String> = occluders
         .filter(|s| !s.is_black())
@@ -44,11 +53,10 @@ pub(super) fn unmodelled(scene: &Scene) -> Vec<String> {
         ));
     }
     if scene.max_bounces > MODELLED {
-        found.push(format!(
-            "light of {} to {} bounces",
-            MODELLED + 1,
-            scene.max_bounces
-        ));
+        found.push(match MODELLED + 1 {
+            first if first == scene.max_bounces => format!("light of {first} bounces"),
+            first => format!("light of {first} to {} bounces", scene.max_bounces),
+        });
     }
     found
 }
@@ -59,21 +67,57 @@ fn spots_that_light_the_view(scene: &Scene) -> usize {
     if scene.laser.is_shining() {
         return 0;
     }
-    let at = |k: usize| k as f64 / (POINTS - 1) as f64;
-    let points = (0..POINTS * POINTS).map(|k| [at(k % POINTS), at(k / POINTS)]);
-    let seen: Vec<(ShapeId, Interaction)> = points.filter_map(|at| wall_at(scene, at)).collect();
+    let seen = seen(scene);
     let lights = |spot: &&Spot| {
-        seen.iter().any(|(wall, point)| {
-            let (from, to) = (&spot.target, point);
-            let towards = to.position - from.position;
-            towards.dot(from.normal) > 0.0
-                && towards.dot(to.normal) < 0.0
-                && Ray::between(from.position, to.position).is_some_and(|ray| {
-                    !scene.bvh().blocked(&ray, [Some(spot.surface), Some(*wall)])
-                })
-        })
+        let of = |to: &(ShapeId, Interaction)| lights(scene, (spot.surface, &spot.target), to);
+        seen.iter().any(of)
     };
     scene.laser.spots.iter().filter(lights).count()
+}
+
+/// Walls that are not black with a point that a spot lights and that lights a point of the view.
+fn walls_that_light_the_view(scene: &Scene) -> Vec<String> {
+    if scene.laser.is_shining() {
+        return Vec::new();
+    }
+    let seen = seen(scene);
+    let walls = scene.surfaces.iter().enumerate();
+    let walls = walls.filter(|(_, s)| s.role == Role::Relay && !s.is_black());
+    let passes_on = |(shape, wall): &(usize, &Surface)| {
+        let mut points = grid(ACROSS).map(|at| (*shape as ShapeId, wall.shape.at(at)));
+        points.any(|point| {
+            let spots = &scene.laser.spots;
+            let is_lit = |spot: &Spot| lights(scene, (spot.surface, &spot.target), &point);
+            let on = |to: &(ShapeId, Interaction)| lights(scene, (point.0, &point.1), to);
+            spots.iter().any(is_lit) && seen.iter().any(on)
+        })
+    };
+    let which = walls.filter(passes_on);
+    which.map(|(_, wall)| format!("`{}`", wall.name)).collect()
+}
+
+/// Points of a square, so many along each side.
+fn grid(count: usize) -> impl Iterator<Item = [f64; 2]> {
+    let at = move |k: usize| k as f64 / (count - 1) as f64;
+    (0..count * count).map(move |k| [at(k % count), at(k / count)])
+}
+
+/// The points of walls that the camera sees.
+fn seen(scene: &Scene) -> Vec<(ShapeId, Interaction)> {
+    grid(POINTS).filter_map(|at| wall_at(scene, at)).collect()
+}
+
+/// Whether light goes from the front of one point to that of another.
+fn lights(
+    scene: &Scene,
+    (own, from): (ShapeId, &Interaction),
+    (other, to): &(ShapeId, Interaction),
+) -> bool {
+    let towards = to.position - from.position;
+    towards.dot(from.normal) > 0.0
+        && towards.dot(to.normal) < 0.0
+        && Ray::between(from.position, to.position)
+            .is_some_and(|ray| !scene.bvh().blocked(&ray, [Some(own), Some(*other)]))
 }
 
 /// The point of a wall that the camera sees there in its view.

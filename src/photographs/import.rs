@@ -99,7 +99,8 @@ pub fn import(
     let line = if given.is_some() || repeated.is_empty() {
         None
     } else {
-        Some(photon_transfer(repeated, shots.has_offset())?)
+        let all = [repeated, shots.dark_repeats()].concat();
+        Some(photon_transfer(all, shots.has_offset())?)
     };
     let noise = given.or(line.map(|l| l.noise));
     let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;

@@ -290,6 +290,24 @@ impl<'a> Shots<'a> {
         Ok(repeated)
     }
 
+    /// The same of the dark frames of the shortest exposure time: of no light.
+    pub(super) fn dark_repeats(&self) -> Vec<Repeated> {
+        let Some(dark) = self.shortest_dark() else {
+            return Vec::new();
+        };
+        let pixels = (0..dark.light.len()).filter(|k| !dark.saturated[*k] && !self.dead[*k]);
+        let of = |k: usize| {
+            Some(Repeated {
+                signal: 0.0,
+                beside: 0.0,
+                variance: dark.scatter(k)? / dark.share,
+                rounding: dark.rounding[k] / dark.share,
+                freedom: (dark.frames - 1) as f64,
+            })
+        };
+        pixels.filter_map(of).collect()
+    }
+
     /// Why photographs of one set may lie on several photon transfer lines, if they may.
     pub(super) fn differ(&self) -> Option<&'static str> {
         let several = |of: fn(&Take) -> Option<f64>| {

@@ -251,6 +251,28 @@ fn repeats_tell_the_noise() {
     // The one dark frame has the read noise, too.
     let due = (16.0 * variance / 3.0 + 256.0 * (16.0 + 1.0 / 12.0)).sqrt();
     assert!((stderr / due - 1.0).abs() < 0.05, "{stderr} {due}");
+    // Two dark frames tell the read noise by what they differ, 16 to √(2/1536) of it: the line alone
+    // knows it ten times worse.
+    for k in 0..2 {
+        let dark: Vec<u16> = (0..48 * 32)
+            .map(|_| (200.0 + 4.0 * normal()).round() as u16)
+            .collect();
+        w.write(
+            &format!("in/z{k}.png"),
+            grey16_png([48, 32], &dark).unwrap(),
+        );
+    }
+    let command =
+        "import --frames in/i*.png --scene tiny.toml --repeats 3 --dark in/z*.png -o dark";
+    let told = w.phicam(&format!("{command} --json")).exits(0);
+    let account: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
+    let read = account["noise"]["read_variance"].as_f64().unwrap();
+    let error = account["photon_transfer"]["read_variance_error"].as_f64();
+    assert!((read - 16.0).abs() < 4.0 * error.unwrap(), "{account}");
+    assert!(error.unwrap() < 1.2 * 16.0 * (2.0f64 / 1536.0).sqrt());
+    let told = w.phicam(&format!("{command} --replace")).exits(0);
+    assert!(told.stdout.contains("read noise 4.") || told.stdout.contains("read noise 3.9"));
+    assert!(told.stdout.contains(" ± 0.07"), "{}", told.stdout);
     w.refuses(
         "import --frames in/i*.png --scene tiny.toml --repeats 4 -o other",
         &["24 photographs for 8 spots with 4 each"],

@@ -286,8 +286,11 @@ fn a_large_deviation_is_followed_to_its_size() {
         let light = light_with(name, size).unwrap();
         let found = tested(&scene, &traced(&light, errors, 1), errors, 1e-3);
         let own = score(&found);
-        let first = &own.likely[0];
-        assert_eq!(first.name, name, "{:?}", own.likely);
+        // Of one spot alone a shift in x is hardly told from a scale.
+        let of_one = name.starts_with("one ");
+        let first = own.likely.iter().find(|d| d.name == name);
+        let first = first.unwrap_or_else(|| panic!("{name}: {:?}", own.likely));
+        assert!(of_one || own.likely[0].name == name, "{:?}", own.likely);
         let off = (first.value - size) / first.stderr;
         println!("{name}: {} ± {} for {size}", first.value, first.stderr);
         assert!(first.is_followed && off.abs() <= 3.5, "{name}: {off}");

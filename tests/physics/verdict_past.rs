@@ -169,6 +169,25 @@ fn light_that_the_model_lacks_is_told() {
         told(&longer, Occlusion::Considered),
         ["light of 4 to 5 bounces"]
     );
+    longer.max_bounces = 4;
+    assert_eq!(told(&longer, Occlusion::Considered), ["light of 4 bounces"]);
+    // A wall of its own beside the other one, that faces it, and one that turns its back on it.
+    let beside = |sides: &str| {
+        let wall = format!(
+            "[[surface]]\nname = \"side\"\nrole = \"relay\"\n\
+             rectangle = {{ corner = [9, 0, 0], {sides} }}\nmaterial = {{ lambertian = 0.6 }}\n\n"
+        );
+        let first = "[[surface]]\nname = \"object\"";
+        bench(&[(first, &format!("{wall}{first}"))])
+    };
+    let facing = beside("u = [0, 0, 6], v = [0, 15.5, 0]");
+    let words = told(&facing, Occlusion::Considered);
+    assert!(
+        words.len() == 1 && words[0].contains("three bounces that `side` sends"),
+        "{words:?}"
+    );
+    let away = beside("u = [0, 15.5, 0], v = [0, 0, 6]");
+    assert!(told(&away, Occlusion::Considered).is_empty());
     let mut shorter = own.clone();
     shorter.max_bounces = 2;
     let words = told(&shorter, Occlusion::Considered);

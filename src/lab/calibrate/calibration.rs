@@ -25,6 +25,8 @@ pub struct Calibrated {
     pub by_frames: Option<f64>,
     /// By those of blocks of pixels.
     pub by_blocks: Option<f64>,
+    /// By the priors of the picture that the photographs do not exclude.
+    pub by_pictures: f64,
     /// How far a finer rule of integration would move it: a part of the error where light is
     /// integrated, told where it is taken by centres.
     pub by_rule: Option<f64>,

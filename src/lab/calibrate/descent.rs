@@ -12,7 +12,7 @@ use nalgebra::DVector;
 
 use super::common::Common;
 use super::geometry::{Geometry, Light};
-use super::picture::Prior;
+use super::picture::{Normal, Prior};
 use super::posterior::{Seen, Slope, Value};
 use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
@@ -122,15 +122,25 @@ impl<'a> Problem<'a> {
         factor: f64,
         prior: Option<&Prior>,
     ) -> Result<State, LabError> {
-        let seen = self.seen(factor);
         let light = self.light(values, self.relative(factor), true)?;
-        let normal = seen.normal(&light)?;
+        let normal = self.seen(factor).normal(&light)?;
         let prior = match prior {
             Some(prior) => prior.clone(),
             None => Prior::likeliest(self.pictures, &normal, self.is_scale_free)?,
         };
-        let value = seen.value(&light, &normal, &prior)?;
-        let slope = seen.slope(&light, &prior, &value, self.unknowns())?;
+        self.state_by((values, factor), (&light, &normal), prior)
+    }
+
+    /// The same by a prior, of `light` at `values` and its normal equations.
+    pub(super) fn state_by(
+        &self,
+        (values, factor): (&[f64], f64),
+        (light, normal): (&Light, &Normal),
+        prior: Prior,
+    ) -> Result<State, LabError> {
+        let seen = self.seen(factor);
+        let value = seen.value(light, normal, &prior)?;
+        let slope = seen.slope(light, &prior, &value, self.unknowns())?;
         Ok(State {
             values: values.to_vec(),
             factor,

@@ -18,6 +18,8 @@ pub(super) use directions::untold;
 const SIGNIFICANCE: f64 = super::LEVEL;
 /// An estimate farther from the scene than this, in what was known beforehand, is told.
 const FAR: f64 = 3.0;
+/// Errors by other pictures are told from so many times those by the likeliest.
+const MORE: f64 = 1.5;
 /// What a finer rule moves is told from this part of the error on.
 const NOTABLE: f64 = 0.5;
 /// Gains that are listed one by one.
@@ -137,12 +139,13 @@ impl Calibration {
                 "With it the photographs fit: χ²/dof {} (p = {}).{}",
                 figure(self.misfit, 3),
                 figure(p, 2),
-                if fits_better(self.misfit, p) {
+                if self.dof > 1.0 && fits_better(self.misfit, p) {
                     " That is CLOSER than the standard errors allow: they are too large, or entries \
                      share them, and the errors of the geometry are not those of the noise."
                 } else if self.asks_for_elements()
                     || self.shared.is_some()
                     || self.neighbours.is_some()
+                    || !self.by_pictures().is_empty()
                 {
                     ""
                 } else {
@@ -212,6 +215,14 @@ impl Calibration {
         )
     }
 
+    /// Parameters whose errors are those of other priors of the picture, by much.
+    fn by_pictures(&self) -> Vec<String> {
+        let more = |f: &&Calibrated| f.by_pictures > MORE * f.by_curvature;
+        let told =
+            |f: &Calibrated| format!("{} by {}", f.name, with_unit(f.by_pictures, 2, &f.unit));
+        self.geometry().filter(more).map(told).collect()
+    }
+
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![self.fit()];
         notes.extend(self.hang_together());
@@ -222,6 +233,7 @@ impl Calibration {
         if self.follows_entries {
             notes.push(format!("Beware: {FOLLOWS_ENTRIES}."));
         }
+        notes.extend(self.impossible());
         notes.push(self.elements());
         notes.extend([self.searched(), self.picture()]);
         let far = self.geometry().filter_map(|f| {
@@ -235,6 +247,16 @@ impl Calibration {
                 "Farther from the scene than what was known beforehand allows: {}. Either that was \
                  stated too well, or the model lacks something.",
                 listed(&far)
+            ));
+        }
+        let by_pictures = self.by_pictures();
+        if !by_pictures.is_empty() {
+            notes.push(format!(
+                "What the picture is like these photographs do not tell well enough: by the likeliest \
+                 prior of it alone the error would be that by curvature, and others that they do not \
+                 exclude move {}. That is counted in the errors. Take more photographs, or fewer \
+                 --elements.",
+                listed(&by_pictures)
             ));
         }
         let by_rule = self.geometry().filter_map(|f| {
@@ -287,7 +309,11 @@ impl Describe for Calibration {
         Finding {
             title: format!("The geometry, from the photographs: {}", self.scene),
             tone: match self.is_found() {
-                true if self.is_coarse() || self.asks_for_elements() || self.shared.is_some() => {
+                true if self.is_coarse()
+                    || self.asks_for_elements()
+                    || self.shared.is_some()
+                    || self.impossible().is_some() =>
+                {
                     Tone::Plain
                 }
                 true => Tone::Good,

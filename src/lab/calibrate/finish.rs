@@ -10,6 +10,7 @@ use super::{
 use crate::lab::certainty::{Errors, correlated, fits_better};
 use crate::lab::error::LabError;
 use crate::lab::located::Grid;
+use crate::lab::unexplained::Unexplained;
 use crate::lab::validation::Integration;
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_raw};
@@ -49,9 +50,10 @@ impl CalibrationPlan {
         let covariance = information.inverse();
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
-        let p = is_noise_known.then(|| known.by_noise(best.value.chi2, dof));
+        let chi2 = problem.chi2(best)?;
+        let p = is_noise_known.then(|| known.by_noise(chi2, dof));
         // Of less than noise leaves nothing is told.
-        let is_close = p.is_some_and(|p| fits_better(best.value.chi2 / dof, p));
+        let is_close = p.is_some_and(|p| fits_better(chi2 / dof, p));
         let neighbours = problem.neighbours(best)?.filter(|_| !is_close);
         let more_than_noise = p.is_none_or(|p| p < LEVEL) || neighbours.is_some();
         let robust = |scores: &Matrix| {
@@ -69,6 +71,7 @@ impl CalibrationPlan {
         let by_blocks = by_blocks.transpose()?;
         let scene = problem.geometry.scene;
         let names = self.names(problem);
+        let by_pictures = problem.by_pictures(best)?;
         let finer = problem.finer(best, &covariance)?;
         let elements = problem.finer_elements(model, best, control)?;
         let is_integrated =
@@ -85,9 +88,8 @@ impl CalibrationPlan {
             let others = [by_frames, by_blocks].map(|x| x.unwrap_or(0.0));
             let by_rule = finer.as_ref().map(|(moved, _)| moved[k].abs());
             let rule = by_rule.filter(|_| is_integrated);
-            let noise = others
-                .into_iter()
-                .fold(by_curvature.max(by_profile), f64::max);
+            let noise = [by_curvature, by_profile, by_pictures[k]];
+            let noise = noise.into_iter().chain(others).fold(0.0, f64::max);
             let by_elements = elements.as_ref().and_then(|e| e.moved.get(k));
             let by_elements = by_elements.map(|moved| moved.abs());
             let [rule, even] = [rule, by_elements].map(|moved| moved.unwrap_or(0.0));
@@ -107,6 +109,7 @@ impl CalibrationPlan {
                 by_curvature,
                 by_frames,
                 by_blocks,
+                by_pictures: by_pictures[k],
                 by_rule,
                 by_elements,
                 identified,
@@ -155,7 +158,7 @@ impl CalibrationPlan {
             noise: ends[0].noise(),
             field: field.as_ref().map(|f| f.errors),
             log_likelier: field.as_ref().map(|_| alone - total),
-            misfit: best.value.chi2 / dof,
+            misfit: chi2 / dof,
             finer_misfit: finer.as_ref().map(|(_, chi2)| chi2 / dof),
             finer_p: finer
                 .as_ref()
@@ -191,6 +194,32 @@ impl CalibrationPlan {
 }
 
 impl Problem<'_> {
+    /// χ² of what is found: of counts by the errors of the light that is found.
+    fn chi2(&self, best: &State) -> Result<f64, LabError> {
+        let Unexplained {
+            phi,
+            stderr,
+            certainty,
+            patterns,
+            ..
+        } = self.photographs;
+        let is_alone = patterns.is_none() && self.common.is_none() && self.cosines.is_none();
+        let Some(stderr) = stderr.filter(|_| certainty.counted.is_some() && is_alone) else {
+            return Ok(best.value.chi2);
+        };
+        let light = self.light(&best.values, self.relative(best.factor), false)?;
+        let of = |l: usize| -> f64 {
+            let seen = light.frame(l) * &best.value.rho;
+            let counts = self.photographs.roots(l).map(|root| root > 0.0);
+            let each = (0..seen.len()).filter(|p| counts[*p]).map(|p| {
+                let own = certainty.stderr(seen[p], stderr[(p, l)]);
+                ((phi[(p, l)] - seen[p]) / own).powi(2)
+            });
+            each.sum()
+        };
+        Ok((0..phi.ncols()).map(of).sum())
+    }
+
     /// The correlation of what is left of neighbouring pixels, where it is more than chance, of a
     /// noise that is stated for each entry's own.
     fn neighbours(&self, best: &State) -> Result<Option<f64>, LabError> {

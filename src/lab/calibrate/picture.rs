@@ -102,11 +102,36 @@ impl Prior {
             }
         }
         let (_, prior, scale) = best.ok_or(LabError::DARK)?;
-        Ok(Self {
-            root: &prior.root * scale,
+        Ok(prior.scaled(scale))
+    }
+
+    /// Those of `all` that are less likely than the likeliest by no more than e^`nats`, each with
+    /// its likeliest scale.
+    pub(super) fn plausible(
+        all: &[Self],
+        of: &Normal,
+        is_free: bool,
+        nats: f64,
+    ) -> Result<Vec<Self>, LabError> {
+        let each = all.iter().map(|prior| prior.log_evidence(of, is_free));
+        let each: Vec<(f64, f64)> = each.collect::<Result<_, _>>()?;
+        let most = each.iter().map(|(log, _)| *log);
+        let most = most.fold(f64::NEG_INFINITY, f64::max);
+        let open = all
+            .iter()
+            .zip(each)
+            .filter(|(_, (log, _))| *log > most - nats);
+        Ok(open
+            .map(|(prior, (_, scale))| prior.scaled(scale))
+            .collect())
+    }
+
+    fn scaled(&self, scale: f64) -> Self {
+        Self {
+            root: &self.root * scale,
             scale,
-            ..prior.clone()
-        })
+            ..self.clone()
+        }
     }
 
     /// ln p(y) up to a constant, and the scale with which it is largest.

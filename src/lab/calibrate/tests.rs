@@ -2,6 +2,7 @@
 
 mod errors;
 mod estimates;
+mod pictures;
 
 use nalgebra::DVector;
 

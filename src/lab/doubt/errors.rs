@@ -14,6 +14,8 @@ pub(super) const DETERMINED: f64 = 0.9;
 const NOTABLE: f64 = 0.5;
 /// Standard errors larger by more than this are others.
 const LARGER: f64 = 1.1;
+/// And by more than this mostly what is taken from pictures in general.
+const MUCH_LARGER: f64 = 3.0;
 
 /// Errors that do not average out over the entries, as a recovery supposes.
 pub(super) fn shared(judged: &Judged) -> Option<String> {
@@ -143,15 +145,37 @@ pub(super) fn undetermined(found: &Recovered, judged: &Judged) -> Option<String>
 
 /// Standard errors that take neighbours to be as alike as in most pictures, where the photographs
 /// do not say how alike they are.
-pub(super) fn alike_untold(found: &Recovered) -> Option<String> {
-    let Choice::Averaged { if_unalike } = found.choice else {
+pub(super) fn alike_untold(found: &Recovered, judged: &Judged) -> Option<String> {
+    let Choice::Averaged {
+        if_unalike: Some(times),
+    } = found.choice
+    else {
         return None;
     };
-    let times = if_unalike.filter(|times| *times > LARGER && found.standard_error.is_some())?;
-    Some(format!(
-        "the photographs do not say how alike neighbouring elements are: standard errors and bands take \
-         that from pictures in general. Of elements that have nothing in common with their neighbours \
-         they are {} times as large in the mean, and more where these look smooth by chance. Use fewer --elements, or believe them of usual pictures only",
-        significant(times, 2)
-    ))
+    let median = |mut all: Vec<f64>| -> Option<f64> {
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied()
+    };
+    let own = median(found.standard_error.as_ref()?.iter().copied().collect())?;
+    let is_scaled = found.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
+    let shares = judged.determined.as_ref().filter(|_| !is_scaled);
+    let alone = |share: &f64| HALF * (1.0 - share).max(0.0).sqrt();
+    let alone = shares.and_then(|known| median(known.shares.iter().map(alone).collect()));
+    let alone = alone.filter(|alone| *alone > MUCH_LARGER * own);
+    (times > LARGER || alone.is_some()).then(|| {
+        let rest = alone.map_or(String::new(), |alone| {
+            format!(
+                " They are ± {} in the median, where the photographs alone tell an element of 0.5 ± 0.5 to ± {}.",
+                figure(own, 2),
+                figure(alone, 2)
+            )
+        });
+        format!(
+            "the photographs do not say how alike neighbouring elements are: standard errors and bands take \
+             that from pictures in general.{rest} Of elements that have nothing in common with their neighbours \
+             they are {} times as large in the mean, and several times where these look smooth by chance, as \
+             checks do from afar. Use fewer --elements, or believe them of usual pictures only",
+            significant(times, 2)
+        )
+    })
 }

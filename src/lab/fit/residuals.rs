@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::Fit;
 use crate::lab::agreement::freedom_of_rows;
 use crate::lab::certainty::{Certainty, Errors, correlated};
+use crate::lab::counted::Counted;
 use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, sidak_threshold};
@@ -37,6 +38,8 @@ pub struct Residuals {
     pub(super) left_out: usize,
     /// Pixel, spot and |z| of those far off.
     far: Vec<(usize, usize, f64)>,
+    /// Σ κ of counts.
+    excess: f64,
     /// z of the last row, and Σ z z′ over rows that follow each other: pixels side by side.
     last: Vec<f64>,
     beside: f64,
@@ -57,14 +60,17 @@ impl Residuals {
                     continue;
                 }
                 self.entries += 1;
-                let t = (phi[at] - seen[at]) / stderr[at];
+                let stderr = certainty.stderr(seen[at], stderr[at]);
+                self.excess += certainty.counted.map_or(0.0, |own| own.excess_of(stderr));
+                let t = (phi[at] - seen[at]) / stderr;
                 let z = certainty.normal(t.abs());
                 let signed = z.copysign(t);
+                let far = certainty.of_counts(signed, stderr).abs();
                 self.beside += signed * self.last[l];
                 self.last[l] = signed;
                 sum += z * z;
-                if z > FAR && self.far.len() <= MOST_FAR {
-                    self.far.push((self.sums.len(), l, z));
+                if far > FAR && self.far.len() <= MOST_FAR {
+                    self.far.push((self.sums.len(), l, far));
                 }
             }
             self.sums.push(sum);
@@ -81,6 +87,11 @@ impl Residuals {
         }
         let squares = self.sums.iter().sum::<f64>();
         let chi2_per_dof = squares / left;
+        let excess = self.excess / entries;
+        let certainty = Certainty {
+            counted: certainty.counted.map(|own| Counted { excess, ..own }),
+            ..certainty
+        };
         let dof = match certainty.errors {
             Errors::Independent => certainty.of_chi2(left),
             Errors::WithinRows => freedom_of_rows(&self.sums, self.entries) * left / entries,

@@ -37,6 +37,8 @@ pub(super) struct Optimum {
     pub exchanges: usize,
     /// Risk before the spots leave the grid.
     pub on_grid: f64,
+    /// Part of the risk of the layout that exposures of their own can take off it.
+    pub exposures: f64,
     /// (x, y) of the spots.
     pub layout: Vec<[f64; 2]>,
 }
@@ -188,10 +190,13 @@ impl Describe for Layouts {
                 o.exchanges
             ),
             format!(
-                "Photographs have {} × {} pixels. Limits are of {} draws of modelled photographs, recovered by joint with the weight of each entry; their noise is relative to their own light.",
+                "Photographs have {} × {} pixels, which are taken by their centres, as elements and spots are. Limits are of {} draws of modelled photographs, recovered by joint with the weight of each entry; their noise is relative to their own light.",
                 self.pixels[0], self.pixels[1], self.draws
             ),
-            "Every spot has the same exposure, and one photograph has one spot: exposures of their own gain less than 0.5 % of the risk, and several spots at once gain only where each has the whole power of the laser.".to_owned(),
+            format!(
+                "Every spot has the same exposure, and one photograph has one spot. Exposures of their own, of the same sum, would take {} % off the risk; several spots at once gain only where each has the whole power of the laser.",
+                figure(100.0 * o.exposures, 2)
+            ),
             "`layout.toml` is the scene with these spots.".to_owned(),
         ];
         if self.unsure > 0 {

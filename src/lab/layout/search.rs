@@ -7,7 +7,7 @@ use super::photographs::Photographs;
 use super::places::Places;
 use super::plan::Plan;
 use super::refine::refined;
-use super::relaxed::relaxed;
+use super::relaxed::{of_exposures, relaxed};
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;
 use crate::transport::Control;
@@ -49,6 +49,12 @@ pub(super) fn searched(
     let layout: Vec<[f64; 2]> = chosen.iter().map(|s| candidates[*s]).collect();
     let rounds = (plan.refine, 0.5 * places.spacing(plan.candidates));
     let layout = refined(&design, photographs, places, layout, rounds, control)?;
+    let lit: Vec<Matrix> = photographs
+        .triangles(&layout)?
+        .into_iter()
+        .flatten()
+        .collect();
+    let exposures = of_exposures(&Design::new(&lit, &photographs.factor)?, control)?;
     Ok(Optimum {
         candidates,
         relaxed: best.risk,
@@ -57,6 +63,7 @@ pub(super) fn searched(
         steps: best.steps,
         exchanges,
         on_grid,
+        exposures,
         layout,
     })
 }

@@ -84,7 +84,7 @@ impl Occluders {
         };
         Table {
             caption: format!(
-                "Directions of {} above a noise, share of the prior variance that is left at {}, and the most {} noise at which a board has an MTF of 0.9, another picture a correlation of 0.9",
+                "Directions above a noise, of {} elements, share of the prior variance that is left at {}, and the most {} noise at which a board has an MTF of 0.9, another picture a correlation of 0.9",
                 self.elements,
                 figure(self.level, 1),
                 self.noise

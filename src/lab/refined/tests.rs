@@ -3,10 +3,12 @@ use crate::lab::certainty::FOLLOWS_ENTRIES;
 use crate::lab::misplaced::normal;
 use crate::lab::pooled::tests::repeated;
 use crate::lab::{
-    Against, Certainty, Errors, Integration, Measured, Noise, Test, recover_objects, validate,
+    Against, Certainty, Errors, Evidence, Integration, Measured, Noise, Residuals, Test, agree,
+    recover_objects, validate,
 };
 use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
 use crate::num::control::Control;
+use crate::num::statistics::binomial_interval;
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::{Method, Nuisance, Options};
 use crate::scene::Scene;
@@ -160,5 +162,67 @@ fn counts_of_none_have_errors() {
             let each = light.map(|mu| 2.0 + 1.0 / mu).mean() / z.len() as f64;
             assert!((mean - 1.0).abs() < 5.0 * each.sqrt(), "{mean}");
         }
+    }
+}
+
+/// Right light of few counts with √n for errors: the verdict at 5 % and the fit of a picture at 1e-3
+/// reject no oftener than they say, within the binomial 99.9 % of 200 draws; 1.5 times the light is
+/// rejected always. As of normal noise more verdicts are rejections than is said.
+#[test]
+fn right_light_of_few_counts_is_rejected_no_oftener_than_is_said() {
+    let draws = 200;
+    for mean in [0.5, 1.0, 3.0, 10.0] {
+        let light = Matrix::from_fn(36, 16, |p, l| {
+            mean * (1.0 + 0.4 * libm::sin(p as f64)) * (1.0 + 0.3 * libm::cos(l as f64))
+        });
+        let (mut alarms, mut misfits, mut skewed) = (0, 0, 0);
+        for seed in 0..draws {
+            let key = Key {
+                seed,
+                spot: 0,
+                pixel: 0,
+                block: 0,
+            };
+            let mut draw = Stream::new(Sampling::Pcg, key);
+            let phi = light.map(|mu| draw.poisson(mu));
+            let own = phi.map(f64::sqrt);
+            let refined = Refined::of(&phi, &own, Certainty::STATED, None);
+            let counted = refined.certainty.counted.unwrap();
+            let agrees = |model: &Matrix, is_counted: bool| {
+                let stderr = counted.of_light(model, (&phi, &refined.stderr));
+                let counted = Counted::new(counted.law, stderr.iter()).filter(|_| is_counted);
+                let known = Certainty {
+                    counted,
+                    ..refined.certainty
+                };
+                let evidence = Evidence {
+                    traced: &phi,
+                    stderr: &stderr,
+                    model,
+                    bound: None,
+                    left_out: None,
+                    eliminated: None,
+                };
+                let test = Test {
+                    significance: 0.05,
+                    known,
+                };
+                agree(evidence, test, None).0.agrees
+            };
+            alarms += u64::from(!agrees(&light, true));
+            skewed += u64::from(!agrees(&light, false));
+            assert!(!agrees(&(&light * 1.5), true), "{mean} {seed}");
+            let known = refined.certainty;
+            let mut residuals = Residuals::default();
+            residuals.add(&phi, &light, &refined.stderr, known);
+            let fit = residuals.fit(0.0, known).unwrap();
+            misfits += u64::from(!fit.fits || fit.outlier.is_some());
+        }
+        println!("{mean}: {alarms} of {draws}, {misfits} misfits; as normal {skewed}");
+        let [_, most] = binomial_interval(draws, 0.05, 0.999);
+        assert!(alarms <= most, "{mean}: {alarms}");
+        let [_, few] = binomial_interval(draws, 1e-3, 0.999);
+        assert!(misfits <= few, "{mean}: {misfits}");
+        assert!(mean > 1.0 || skewed > 2 * most, "{mean}: {skewed}");
     }
 }

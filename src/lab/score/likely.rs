@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::deviation::{Derivatives, Deviation};
 use super::followed::followed;
 use crate::lab::eliminated::Eliminated;
@@ -57,11 +59,12 @@ impl Causes<'_> {
             d.name == own.name && d.spot == own.spot
         };
         let rest = all().filter(|d| !causes.iter().any(|cause| is(d, cause)));
-        let rest = rest.filter_map(|d| self.straight(d));
+        let rest: Vec<&Deviation> = rest.collect();
+        let rest = rest.into_par_iter().filter_map(|d| self.straight(d));
         let rest = rest.filter(is_as_good).map(|cause| cause.deviation);
+        let mut rest: Vec<Deviation> = rest.collect();
         let followed = others.iter().filter(|other| is_as_good(other));
-        let followed = followed.map(|other| other.deviation.clone());
-        let mut rest: Vec<Deviation> = rest.chain(followed).collect();
+        rest.extend(followed.map(|other| other.deviation.clone()));
         rest.sort_by(|a, b| least(&a, &b));
         std::iter::once(best.deviation.clone())
             .chain(rest)

@@ -17,5 +17,5 @@ pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
 pub use fisher::fisher_sf;
 pub use gamma::{freedom_of_log_variance, pentagamma, trigamma};
-pub use normal::normal_two_sided;
+pub use normal::{normal_two_sided, unskewed};
 pub use student::{student_threshold, student_to_normal};

@@ -65,7 +65,7 @@ fn by_discrepancy(
         high = low;
         low *= STEP;
         if low * first < NOTHING * last {
-            return Err(rule.understated(level(0.0)));
+            return Ok((low, rule.weakest(level(0.0))?));
         }
     }
     while high / low > 1.0 + 1e-12 {

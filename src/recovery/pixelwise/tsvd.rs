@@ -40,10 +40,11 @@ pub(super) fn choose(
         Rule::Discrepancy => {
             let rule = Discrepancy::new(METHOD, "rank", problem, spectrum)?;
             let level = |kept| rule.level(&spectrum.truncated(kept));
-            let kept = (1..=spectrum.len())
-                .find(|&kept| level(kept).accepted())
-                .ok_or_else(|| rule.understated(level(spectrum.len())))?;
-            Ok((kept, level(kept).choice()))
+            let accepted = (1..=spectrum.len()).find(|&kept| level(kept).accepted());
+            match accepted {
+                Some(kept) => Ok((kept, level(kept).choice())),
+                None => Ok((spectrum.len(), rule.weakest(level(spectrum.len()))?)),
+            }
         }
         Rule::Gcv => Data::new(problem, spectrum).kept_by_gcv().ok_or(undecided),
         Rule::LCurve => Data::new(problem, spectrum)

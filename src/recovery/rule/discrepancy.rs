@@ -12,7 +12,8 @@
 //!
 //! > ‖Φ P − Φ‖² ≤ limit² = target² + 2 √(2 Σ σ⁴ (1 − P_ll))
 //!
-//! and the strongest regularisation that satisfies it is taken.
+//! and the strongest regularisation that satisfies it is taken; where none does the weakest, if
+//! that is within four of them.
 
 use super::Data;
 use crate::recovery::{Choice, Method, Problem, RecoveryError, Spectrum};
@@ -111,13 +112,24 @@ impl<'s> Discrepancy<'s> {
         }
     }
 
-    /// The error where not even `weakest` is accepted.
-    pub(in crate::recovery) fn understated(&self, weakest: Level) -> RecoveryError {
-        RecoveryError::NoiseUnderstated {
-            residual: weakest.residual.sqrt(),
-            limit: weakest.limit.sqrt(),
-            parameter: self.parameter,
+    /// The weakest regularisation where none is accepted: right photographs leave so much over once
+    /// in forty. Within four deviations it is taken.
+    ///
+    /// # Errors
+    /// [`RecoveryError::NoiseUnderstated`] beyond.
+    pub(in crate::recovery) fn weakest(&self, weakest: Level) -> Result<Choice, RecoveryError> {
+        let surely = Level {
+            limit: weakest.target + 2.0 * (weakest.limit - weakest.target),
+            ..weakest
+        };
+        if surely.accepted() {
+            return Ok(surely.choice());
         }
+        Err(RecoveryError::NoiseUnderstated {
+            residual: surely.residual.sqrt(),
+            limit: surely.limit.sqrt(),
+            parameter: self.parameter,
+        })
     }
 }
 
@@ -160,6 +172,32 @@ mod tests {
             "{mean} {target} {spread}"
         );
         assert!(inside >= 380, "{inside}");
+    }
+
+    /// Where none is accepted the weakest is taken within four deviations of its target, and is an
+    /// error beyond.
+    #[test]
+    fn the_weakest_is_taken_within_four_deviations() {
+        let bench = Bench::new(3.0, 4, 4);
+        let laser = svd(&bench.d).unwrap();
+        let spectrum = Spectrum::of(&laser, 16);
+        let phi = &bench.c * &bench.d;
+        let stderr = phi.map(|_| 1e-3 * phi.amax());
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let all = Discrepancy::new(Method::Tsvd, "rank", &problem, &spectrum).unwrap();
+        let of = |deviations: f64| Level {
+            residual: 100.0 + 0.5 * deviations * 20.0,
+            target: 100.0,
+            limit: 120.0,
+        };
+        for (deviations, is_taken) in [(2.1, true), (3.9, true), (4.1, false)] {
+            assert!(!of(deviations).accepted());
+            assert_eq!(
+                all.weakest(of(deviations)).is_ok(),
+                is_taken,
+                "{deviations}"
+            );
+        }
     }
 
     /// Of fewer spots than elements the weakest regularisation leaves nothing over, where no noise

@@ -3,6 +3,10 @@
 use crate::lab::calibrate::{Calibration, FinerElements};
 use crate::num::digits::{figure, perhaps};
 
+/// Standard errors, and beside them a part of 1, by which reflectances are surely beyond 0 and 1.
+const SURELY: f64 = 5.0;
+const ROOM: f64 = 0.05;
+
 impl Calibration {
     /// Whether the photographs ask for a finer picture.
     pub(super) fn asks_for_elements(&self) -> bool {
@@ -28,6 +32,29 @@ impl Calibration {
             ),
             Some(_) => format!("{even}; the photographs do not ask for {twice}."),
         }
+    }
+
+    /// That no surface can be so, where the picture is beyond what one reflects by more than its
+    /// errors; of a free scale below 0 alone.
+    pub(super) fn impossible(&self) -> Option<String> {
+        let each = self
+            .grids
+            .iter()
+            .flat_map(|g| g.values.iter().zip(&g.stderr));
+        let is_free = self.scale != 1.0;
+        let beyond = |(x, s): &(&f64, &f64)| {
+            **x < -SURELY * **s - ROOM || !is_free && **x - 1.0 > SURELY * **s + ROOM
+        };
+        each.clone().find(beyond)?;
+        let (least, most) = each.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (x, _)| {
+            (a.min(*x), b.max(*x))
+        });
+        Some(format!(
+            "Beware: the picture has reflectances from {} to {}, and no surface reflects less than 0 or more \
+             than all. Sign, unit or scale of the photographs is wrong, or something that is not free.",
+            figure(least, 2),
+            figure(most, 2)
+        ))
     }
 
     /// What it assumes, and how good it is.

@@ -38,6 +38,10 @@ impl Calibration {
                     (Column::number("by blocks", "by_blocks", "", 2), |f| {
                         f.by_blocks.into()
                     }),
+                    (
+                        Column::number("by other pictures", "by_pictures", "", 2),
+                        |f| f.by_pictures.into(),
+                    ),
                     (Column::number("by finer rule", "by_rule", "", 2), |f| {
                         f.by_rule.into()
                     }),
