@@ -8,11 +8,12 @@
 //!
 //! if that is larger: u_c is what frame c, or one of 4 × 4 blocks of pixels, says where only the
 //! others are fitted ([`left_out`]), so that what the model lacks counts once a frame or block
-//! (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others following, falls by
-//! ½ farther out, that is the error, and so is what priors of the picture say that the photographs
-//! do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov θ (RX)ᵀ. What a
-//! picture of twice as many elements along each side would move is an error too where the
-//! photographs ask for it, and so is what the next rule of integration would ([`rule`]).
+//! (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others following, falls
+//! by ½ farther out, that is the error, and so is what priors of the picture say that the
+//! photographs do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov
+//! θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
+//! where the photographs ask for it, and so is what the next rule of integration would
+//! ([`rule`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60

@@ -1,12 +1,12 @@
 //! Noise of counts, and how far it is from normal.
 //!
-//! Of light x the variance σ² = a + b x + c x² is that of counts of b each, beside normal noise: b x
-//! is Poisson's, whose third and fourth cumulants are b² x and b³ x. A deviate over σ has the
+//! Of light x the variance σ² = a + b x + c x² is that of counts of b each, beside normal noise:
+//! b x is Poisson's, whose third and fourth cumulants are b² x and b³ x. A deviate over σ has the
 //! skewness and the excess
 //!
 //! > γ = b² x/σ³,   κ = b³ x/σ⁴:   1/√n and 1/n of n counts alone,
 //!
-//! so that of 5 counts one lies 4 standard errors off 17 times as often as a normal number does.
+//! so that of 3 counts one lies 4 standard errors off 17 times as often as a normal number does.
 
 use crate::matrix::Matrix;
 
@@ -78,7 +78,8 @@ impl Counted {
 mod tests {
     use super::*;
 
-    /// Of counts alone γ = 1/√n and κ = 1/n; beside normal noise a and c of itself by the cumulants.
+    /// Of counts alone γ = 1/√n and κ = 1/n; beside normal noise a and c of itself by the
+    /// cumulants.
     #[test]
     fn cumulants_by_hand() {
         let counts = [4.0f64, 25.0];

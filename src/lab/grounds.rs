@@ -8,11 +8,11 @@ use super::certainty::{Certainty, FOLLOWS_ENTRIES};
 use super::counted::Counted;
 use super::evidence::{Evidence, Test};
 use super::gains::Gains;
+use super::measured::{Measured, ValidationError};
 use super::other_light::Left;
 use super::refined::Refined;
 use super::score::Derivatives;
 use super::seldom::Seldom;
-use super::validation::{Measured, ValidationError};
 use crate::matrix::Matrix;
 use crate::model::{Kernel, ModelError};
 use crate::num::statistics::sidak_threshold;
@@ -61,8 +61,8 @@ impl<'a> Grounds<'a> {
         }
     }
 
-    /// The verdict on a model, W, and z of every entry. Where it is refused, and something stands in
-    /// the way, with an allowance for shadows that few paths meet.
+    /// The verdict on a model, W, and z of every entry. Where it is refused, and something stands
+    /// in the way, with an allowance for shadows that few paths meet.
     ///
     /// # Errors
     /// [`ValidationError`].

@@ -173,6 +173,7 @@ mod layout;
 mod likelier;
 mod limit;
 mod located;
+mod measured;
 mod measures;
 mod misplaced;
 mod noise;
@@ -250,6 +251,7 @@ pub use indicator::{
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
 pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order};
+pub use measured::{Measured, ValidationError};
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
@@ -276,4 +278,4 @@ pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
 pub use unexplained::{Photographs, Unexplained, fewer};
-pub use validation::{Against, Integration, Measured, Validation, ValidationError, validate};
+pub use validation::{Against, Integration, Validation, validate};

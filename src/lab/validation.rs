@@ -1,16 +1,15 @@
 //! Traced Φcam against the matrix model of its scene.
 
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged, is_obstructed};
-use crate::num::linalg::LinalgError;
+use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged, is_obstructed};
 use crate::num::named::named;
-use crate::recovery::{Nuisance, RecoveryError};
 use crate::scene::Scene;
 
 use super::agreement::{Agreement, agree};
 use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::grounds::{Basis, Grounds};
+use super::measured::{Measured, ValidationError};
 use super::score::Derivatives;
 use super::unmodelled::unmodelled;
 
@@ -28,31 +27,6 @@ named! {
     }
 }
 
-/// What is tested: Φcam as it was traced or measured, pixels × spots.
-#[derive(Clone, Copy, Debug)]
-pub struct Measured<'a> {
-    /// Φcam, W, or any unit where the scale is free.
-    pub phi: &'a Matrix,
-    /// Its standard error, the same unit.
-    pub stderr: &'a Matrix,
-    /// What is fitted to it first, and which entries do not count, their error not being trusted.
-    pub beside: Nuisance<'a>,
-}
-
-impl<'a> Measured<'a> {
-    /// Light in W with nothing beside the model's.
-    pub fn new(phi: &'a Matrix, stderr: &'a Matrix, left_out: Option<&'a Matrix>) -> Self {
-        Self {
-            phi,
-            stderr,
-            beside: Nuisance {
-                left_out,
-                ..Nuisance::default()
-            },
-        }
-    }
-}
-
 /// What it is tested against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Against {
@@ -62,35 +36,6 @@ pub struct Against {
     pub integration: Integration,
     /// Whether it knows what stands in the way.
     pub occlusion: Occlusion,
-}
-
-/// Why nothing can be validated.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum ValidationError {
-    /// The scene has no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// Traced and modelled matrices differ in shape.
-    #[error(
-        "the traced matrix is {found_rows} × {found_columns}, but the scene has {rows} pixels and {columns} spots \
-         (give the scene that was rendered)"
-    )]
-    Shape {
-        /// Pixels of the scene.
-        rows: usize,
-        /// Spots of the scene.
-        columns: usize,
-        /// Rows given.
-        found_rows: usize,
-        /// Columns given.
-        found_columns: usize,
-    },
-    /// What is beside the model does not fit it.
-    #[error(transparent)]
-    Beside(#[from] RecoveryError),
-    /// Patterns of other light cannot be decomposed.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
 }
 
 /// A verdict with what it rests on.

@@ -251,8 +251,8 @@ fn repeats_tell_the_noise() {
     // The one dark frame has the read noise, too.
     let due = (16.0 * variance / 3.0 + 256.0 * (16.0 + 1.0 / 12.0)).sqrt();
     assert!((stderr / due - 1.0).abs() < 0.05, "{stderr} {due}");
-    // Two dark frames tell the read noise by what they differ, 16 to √(2/1536) of it: the line alone
-    // knows it ten times worse.
+    // Two dark frames tell the read noise by what they differ, 16 to √(2/1536) of it: the line
+    // alone knows it ten times worse.
     for k in 0..2 {
         let dark: Vec<u16> = (0..48 * 32)
             .map(|_| (200.0 + 4.0 * normal()).round() as u16)

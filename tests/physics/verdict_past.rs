@@ -205,7 +205,9 @@ fn light_that_the_model_lacks_is_told() {
     let bowl = Scene::from_toml("bowl", BOWL).unwrap();
     let words = told(&bowl, Occlusion::Considered);
     assert!(
-        words.len() == 1 && words[0].contains("2 of 2 spots straight to"),
+        words.len() == 2
+            && words[0].contains("2 of 2 spots straight to")
+            && words[1].contains("three bounces that `bowl` sends"),
         "{words:?}"
     );
     let plate = with_plate_at([0.0; 3]);

@@ -1,9 +1,9 @@
 //! What the unknowns may be by other priors of the picture.
 //!
-//! Spread and length of the picture are the likeliest of a few ([`Prior`]). Where photographs hardly
-//! tell them, others explain these as well with another geometry: of a board in black and white few
-//! entries are likeliest from a grey one that stands elsewhere. From the estimate θ̂ one Newton step
-//! by prior k leads to
+//! Spread and length of the picture are the likeliest of a few ([`Prior`]). Where photographs
+//! hardly tell them, others explain these as well with another geometry: of a board in black and
+//! white few entries are likeliest from a grey one that stands elsewhere. From the estimate θ̂
+//! one Newton step by prior k leads to
 //!
 //! > θ_k = θ̂ − C_k s_k,   C_k = (F_k + Λ)⁻¹,   ln p(y|k) = −cost_k + ½ s_kᵀC_k s_k + ½ ln det C_k
 //!

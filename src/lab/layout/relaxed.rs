@@ -42,13 +42,7 @@ pub(super) fn relaxed(
 ) -> Result<Relaxed, LabError> {
     let all = design.candidates().len();
     let weights = vec![count as f64 / all as f64; all];
-    let share = |wanted| shared(wanted, count);
-    stepped(
-        design,
-        weights,
-        (&share, &|gains| largest(gains, count)),
-        control,
-    )
+    stepped(design, (weights, count), Most::One, control)
 }
 
 /// Part of the risk that exposures of their own of all candidates, 0 ≤ w_s, Σ w_s = N, can take off
@@ -57,24 +51,50 @@ pub(super) fn relaxed(
 /// # Errors
 /// Those of [`relaxed`].
 pub(super) fn of_exposures(design: &Design, control: Control<'_>) -> Result<f64, LabError> {
-    let alike = vec![1.0; design.candidates().len()];
-    let count = alike.len() as f64;
+    let count = design.candidates().len();
+    let alike = vec![1.0; count];
     let risk = design.risk(&design.weighted(&alike))?;
-    let share = |wanted: Vec<f64>| {
-        let sum: f64 = wanted.iter().sum();
-        wanted.iter().map(|v| v * count / sum).collect()
-    };
-    let most = |gains: &[f64]| count * largest(gains, 1);
-    let best = stepped(design, alike, (&share, &most), control)?;
+    let best = stepped(design, (alike, count), Most::All, control)?;
     Ok(1.0 - best.risk / risk)
 }
 
-/// Steps from `weights`; `share` makes weights of v_s = w_s √g_s, and no weights have a larger Σ g_s
-/// v_s than `most` says.
+/// The most weight that a candidate may have.
+#[derive(Clone, Copy)]
+enum Most {
+    One,
+    /// That of all.
+    All,
+}
+
+impl Most {
+    /// Weights of v_s = w_s √g_s whose sum is `count`.
+    fn share(self, wanted: Vec<f64>, count: usize) -> Vec<f64> {
+        match self {
+            Self::One => shared(wanted, count),
+            Self::All => {
+                let sum: f64 = wanted.iter().sum();
+                let one = count as f64 / sum;
+                wanted.iter().map(|v| v * one).collect()
+            }
+        }
+    }
+
+    /// The largest Σ g_s v_s of such weights.
+    fn largest(self, gains: &[f64], count: usize) -> f64 {
+        let mut sorted = gains.to_vec();
+        sorted.sort_by(|a, b| b.total_cmp(a));
+        match self {
+            Self::One => sorted.iter().take(count).sum(),
+            Self::All => sorted.first().map_or(0.0, |most| count as f64 * most),
+        }
+    }
+}
+
+/// Steps from weights, `count` together.
 fn stepped(
     design: &Design,
-    mut weights: Vec<f64>,
-    (share, most): (&dyn Fn(Vec<f64>) -> Vec<f64>, &dyn Fn(&[f64]) -> f64),
+    (mut weights, count): (Vec<f64>, usize),
+    most: Most,
     control: Control<'_>,
 ) -> Result<Relaxed, LabError> {
     let (mut bound, mut steps) = (0.0f64, 0);
@@ -83,7 +103,7 @@ fn stepped(
         let a = design.weighted(&weights);
         let (risk, gains) = (design.risk(&a)?, design.gains(&a)?);
         let spent: f64 = weights.iter().zip(&gains).map(|(w, g)| w * g).sum();
-        bound = bound.max(risk + spent - most(&gains));
+        bound = bound.max(risk + spent - most.largest(&gains, count));
         if risk - bound <= CLOSE * risk || steps == STEPS {
             return Ok(Relaxed {
                 weights,
@@ -93,16 +113,10 @@ fn stepped(
             });
         }
         let wanted = weights.iter().zip(&gains);
-        weights = share(wanted.map(|(w, g)| w * g.max(0.0).sqrt()).collect());
+        let wanted = wanted.map(|(w, g)| w * g.max(0.0).sqrt()).collect();
+        weights = most.share(wanted, count);
         steps += 1;
     }
-}
-
-/// The sum of the `count` largest.
-fn largest(gains: &[f64], count: usize) -> f64 {
-    let mut sorted = gains.to_vec();
-    sorted.sort_by(|a, b| b.total_cmp(a));
-    sorted.iter().take(count).sum()
 }
 
 /// min(1, v_s/λ) with the λ for which they sum to `count`.
@@ -176,7 +190,7 @@ mod tests {
         let a = design.weighted(&weights);
         let (risk, gains) = (design.risk(&a).unwrap(), design.gains(&a).unwrap());
         let spent: f64 = weights.iter().zip(&gains).map(|(w, g)| w * g).sum();
-        let first = risk + spent - largest(&gains, count);
+        let first = risk + spent - Most::One.largest(&gains, count);
         let last = relaxed(&design, count, Control::none()).unwrap();
         assert!(first <= last.bound && last.bound <= last.risk && last.risk < risk);
         for start in 0..40 {
@@ -202,7 +216,6 @@ mod tests {
         }
         let gain = of_exposures(&design, Control::none()).unwrap();
         let found = 1.0 - least / risk([1.0; 3]);
-        println!("{gain} {found}");
         assert!(found > 0.01, "{found}");
         assert!(
             found - gain < 2.0 * CLOSE && gain - found < 1e-3,

@@ -196,9 +196,10 @@ fn right_light_is_as_improbable_as_is_said() {
     }
 }
 
-/// What is fitted with pooled weights w, as if these were known, has the variance Σ w²σ² over (Σ w)²
-/// and states 1/Σ w: how many times too small that error is is said, without σ, to 1 % in the mean of
-/// 300 draws. σ² is a product, and scatters about it by a factor of 3; from 2, 3 and 8 photographs.
+/// What is fitted with pooled weights w, as if these were known, has the variance Σ w²σ² over (Σ
+/// w)² and states 1/Σ w: how many times too small that error is is said, without σ, to 1 % in the
+/// mean of 300 draws. σ² is a product, and scatters about it by a factor of 3; from 2, 3 and 8
+/// photographs.
 #[test]
 fn errors_of_a_fit_by_pooled_weights_are_as_much_too_small_as_is_said() {
     let (pixels, spots, draws) = (60, 40, 300);
@@ -218,12 +219,11 @@ fn errors_of_a_fit_by_pooled_weights_are_as_much_too_small_as_is_said() {
             variance += squares / weights.sum();
             said += pooled.certainty.pooled_from.unwrap().variance;
         }
-        println!("{count} {scatter}: {} of {said}", variance / draws as f64);
         let off = (variance / said).sqrt() - 1.0;
         assert!(off.abs() < 0.01, "{count} {scatter}: {off}");
     }
-    // Not pooled, by Student's law: of 10 replicates ν/(ν − 4) = 9/5, of 5 no variance at all, of 32
-    // hardly more than 1.
+    // Not pooled, by Student's law: of 10 replicates ν/(ν − 4) = 9/5, of 5 no variance at all, of
+    // 32 hardly more than 1.
     let times = |n| from(n).too_small();
     assert!((times(10).unwrap() - 1.8f64.sqrt()).abs() < 1e-15);
     assert_eq!((times(5), times(32)), (Some(f64::INFINITY), None));

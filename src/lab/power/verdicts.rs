@@ -6,8 +6,8 @@ use super::results::{Detection, PowerPlan, PowerRow};
 use crate::lab::error::LabError;
 use crate::lab::evidence::Test;
 use crate::lab::grounds::{Basis, Grounds};
+use crate::lab::measured::Measured;
 use crate::lab::score::{Derivatives, Parameter};
-use crate::lab::validation::Measured;
 use crate::matrix::Matrix;
 use crate::model::Kernel;
 use crate::num::statistics::binomial_interval;
@@ -39,8 +39,8 @@ pub struct Verdicts {
     pub(super) smallest_scale: f64,
 }
 
-/// Tests a render of `scene` against every model as `validate` does, by the derivatives of the right
-/// one.
+/// Tests a render of `scene` against every model as `validate` does, by the derivatives of the
+/// right one.
 ///
 /// # Errors
 /// [`LabError`].

@@ -165,7 +165,7 @@ fn counts_of_none_have_errors() {
     }
 }
 
-/// Right light of few counts with √n for errors: the verdict at 5 % and the fit of a picture at 1e-3
+/// Right light of few counts with √n for errors: the verdict at 5 % and the fit at 1e-3
 /// reject no oftener than they say, within the binomial 99.9 % of 200 draws; 1.5 times the light is
 /// rejected always. As of normal noise more verdicts are rejections than is said.
 #[test]
@@ -218,7 +218,6 @@ fn right_light_of_few_counts_is_rejected_no_oftener_than_is_said() {
             let fit = residuals.fit(0.0, known).unwrap();
             misfits += u64::from(!fit.fits || fit.outlier.is_some());
         }
-        println!("{mean}: {alarms} of {draws}, {misfits} misfits; as normal {skewed}");
         let [_, most] = binomial_interval(draws, 0.05, 0.999);
         assert!(alarms <= most, "{mean}: {alarms}");
         let [_, few] = binomial_interval(draws, 1e-3, 0.999);

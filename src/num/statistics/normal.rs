@@ -100,7 +100,7 @@ mod tests {
         }
     }
 
-    /// Of gamma laws z has the law's own tail, to a fifth where that is 1e-3 and a third where it is
+    /// Of gamma laws z has their own tail, to a fifth where that is 1e-3 and a third where it is
     /// 1e-6; of no skewness t itself, and both forms meet.
     #[test]
     fn skewed_tails_are_normal_ones() {

@@ -19,8 +19,8 @@ fn hinge() -> CalibrationPlan {
 }
 
 /// A board in black and white, photographed once by 6 × 6 pixels and by one pixel under 20 spots:
-/// the likeliest prior is a grey one, with the board elsewhere. Its own error holds the truth, 0, in
-/// hardly any of 20 draws; with the priors that are not excluded in 16 at least, the binomial
+/// the likeliest prior is a grey one, with the board elsewhere. Its own error holds the truth, 0,
+/// in hardly any of 20 draws; with the priors that are not excluded in 16 at least, the binomial
 /// 99.9 %.
 #[test]
 fn a_board_in_few_photographs_is_within_the_errors() {
@@ -37,7 +37,6 @@ fn a_board_in_few_photographs_is_within_the_errors() {
             held += u32::from(own.value.abs() < 1.96 * own.stderr);
             by_curvature += u32::from(own.value.abs() < 1.96 * own.by_curvature);
         }
-        println!("{held} held, {by_curvature} by curvature");
         assert!(held >= 16 && by_curvature <= 8, "{held} {by_curvature}");
     }
 }
@@ -126,7 +125,6 @@ fn right_light_of_few_counts_is_not_refuted() {
         squares += (found.found[0].value / found.found[0].stderr).powi(2);
     }
     let rms = (squares / draws as f64).sqrt();
-    println!("{refuted} refuted, {rms}");
     assert!(refuted <= 1, "{refuted}");
     assert!(rms < 1.0 + 4.0 / (2.0 * draws as f64).sqrt(), "{rms}");
 }
