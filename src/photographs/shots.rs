@@ -295,7 +295,9 @@ impl<'a> Shots<'a> {
         let Some(dark) = self.shortest_dark() else {
             return Vec::new();
         };
-        let pixels = (0..dark.light.len()).filter(|k| !dark.saturated[*k] && !self.dead[*k]);
+        let stride = dark.light.len().div_ceil(MOST_REPEATED).max(1);
+        let pixels = (0..dark.light.len()).step_by(stride);
+        let pixels = pixels.filter(|k| !dark.saturated[*k] && !self.dead[*k]);
         let of = |k: usize| {
             Some(Repeated {
                 signal: 0.0,
