@@ -5,33 +5,44 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from statistics import median
 
 import phicam
 
 
-def overhead(call):
-    """Median time of the processor that the calling thread takes: the crate computes in others."""
-    own = []
+def loop():
+    """A hundred thousand squares in Python: some 4 ms."""
+    return sum(i * i for i in range(100_000))
+
+
+def overhead(calls):
+    """The least time of the processor that the calling thread takes for each of the calls, which take turns: the crate computes in
+    other threads."""
+    least = dict.fromkeys(calls, float("inf"))
     for _ in range(15):
-        begun = time.thread_time()
-        call()
-        own.append(time.thread_time() - begun)
-    return median(own)
+        for name, call in calls.items():
+            begun = time.thread_time()
+            call()
+            least[name] = min(least[name], time.thread_time() - begun)
+    return least
 
 
-def test_a_call_costs_less_than_5_ms():
-    """On the bench, 256 × 120: arrays in and out, checks, threads, and what is made of the result."""
+def test_a_call_costs_less_than_a_loop():
+    """On the bench, 256 × 120: arrays in and out, checks, threads, and what is made of the result, in units of what a loop in Python
+    takes beside it."""
     scene = phicam.Scene("bench")
     phi, model = phicam.render(scene, samples=32), phicam.model(scene)
     assert phi.shape == (256, 120)
-    costs = {
-        "render": overhead(lambda: phicam.render(scene, samples=32)),
-        "model": overhead(lambda: phicam.model(scene)),
-        "recover": overhead(lambda: phicam.recover(phi, model, "tsvd")),
-    }
-    print({name: f"{1e3 * cost:.2f} ms" for name, cost in costs.items()})
-    assert max(costs.values()) < 5e-3
+    took = overhead(
+        {
+            "loop": loop,
+            "render": lambda: phicam.render(scene, samples=32),
+            "model": lambda: phicam.model(scene),
+            "recover": lambda: phicam.recover(phi, model, "tsvd"),
+        }
+    )
+    costs = {name: cost / took["loop"] for name, cost in took.items() if name != "loop"}
+    print({name: f"{cost:.2f} of {1e3 * took['loop']:.1f} ms" for name, cost in costs.items()})
+    assert max(costs.values()) < 1
 
 
 def test_import_takes_less_than_numpys():
