@@ -46,15 +46,23 @@ fn bands_of_unbiased_methods_cover_as_often_as_they_say() {
     }
 }
 
-/// Biased methods have no bands, and say why; those between bounds keep their promise to all
-/// elements at once: 60 seeds at 95 % give 57 ± 1.7, 99.9 % of the binomial 51 or more.
+/// Biased methods have no bands, and say why, but where their rule regularises nothing: once in
+/// forty for `tsvd`, 99.9 % of the binomial 6 of 60 or fewer. Those between bounds keep their
+/// promise to all elements at once: 60 seeds at 95 % give 57 ± 1.7, 51 or more.
 #[test]
 fn bands_of_biased_methods_are_withheld() {
     let methods = [Method::Tsvd, Method::JointTv, Method::Joint, Method::Nnls];
     let rows = covered(0.95, 60, &methods);
-    for row in &rows[..2] {
-        assert!(row.bands.is_none() && row.reason.is_some(), "{row:?}");
-    }
+    assert!(
+        rows[0].failed >= 54 && rows[0].reason.is_some(),
+        "{:?}",
+        rows[0]
+    );
+    assert!(
+        rows[1].bands.is_none() && rows[1].reason.is_some(),
+        "{:?}",
+        rows[1]
+    );
     for row in &rows[2..] {
         assert_eq!(row.bands.as_deref(), Some("all together"));
         assert!(row.failed == 0 && row.together.unwrap() >= 0.85, "{row:?}");
