@@ -115,6 +115,9 @@ pub(super) fn score(
             found.spots.extend(own);
         }
     }
+    if !derivatives.are_named {
+        return found;
+    }
     let causes = Causes {
         residual: &residual,
         test,

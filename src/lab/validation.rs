@@ -114,6 +114,7 @@ pub fn validate(
             parameters: &off.parameters,
             of: &|index| off.of(index),
             moved: &|index, size| off.moved(index, size),
+            are_named: true,
         },
     };
     let (mut agreement, z) = Grounds::new(&basis, measured, test).verdict(&phi)?;

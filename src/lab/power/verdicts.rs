@@ -58,8 +58,8 @@ pub(super) fn verdicts(
         derivatives: Derivatives {
             parameters: &models.parameters,
             of: &|index| models.slopes[index].clone(),
-            // Causes need not be followed to be beyond their limits.
             moved: &|_, _| None,
+            are_named: false,
         },
     };
     let measured = Measured::new(&traced.flux, &traced.stderr, None);
