@@ -99,7 +99,11 @@ pub(super) fn score(
                 p: sidak_p(normal_two_sided(fit.z()), family as u64),
                 detectable: fit.detectable(limit),
                 reach: parameter.reach,
-                chi2_per_dof: remaining(fit.value, &d, &columns),
+                chi2_per_dof: if derivatives.are_named {
+                    remaining(fit.value, &d, &columns)
+                } else {
+                    f64::NAN
+                },
                 // Albedos act on all photographs.
                 same: spot.map_or_else(|| parameter.same.clone(), |_| Vec::new()),
                 spot,

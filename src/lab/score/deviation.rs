@@ -31,7 +31,8 @@ pub struct Derivatives<'a> {
     /// Φ(θ) − Φ(0) and ∂Φ/∂θ at θ of a parameter, W and W per unit; `None` where only the
     /// derivative at 0 is known.
     pub moved: &'a (dyn Fn(usize, f64) -> Option<[Matrix; 2]> + Sync),
-    /// Whether the likeliest causes are looked for: that takes many times as long as the test.
+    /// Whether causes are looked for, and what χ² each leaves: that takes many times as long as the
+    /// test. Where not, χ² is NaN.
     pub are_named: bool,
 }
 
