@@ -130,17 +130,19 @@ impl LocatedPlan {
             (control.progress)(1);
             Ok(found)
         };
-        let places = |[from, to]: [f64; 2], steps: usize, each_out: bool| {
-            let size = |k: usize| from + (to - from) * k as f64 / (steps - 1) as f64;
-            let found = (0..steps).into_par_iter().map(|k| place(size(k), each_out));
+        let sizes = |[from, to]: [f64; 2], steps: usize| {
+            let size = move |k: usize| from + (to - from) * k as f64 / (steps - 1) as f64;
+            (0..steps).into_par_iter().map(size)
+        };
+        let places = |range: [f64; 2], steps: usize, each_out: bool| {
+            let found = sizes(range, steps).map(|size| place(size, each_out));
             let found: Vec<Option<Place>> = found.collect::<Result<_, _>>()?;
             Ok::<_, LabError>(found.into_iter().flatten().collect::<Vec<Place>>())
         };
         let coarse = places(self.range, self.steps, false)?;
         if coarse.is_empty() {
-            let [from, to] = self.range;
-            let size = |k: usize| from + (to - from) * k as f64 / (self.steps - 1) as f64;
-            if (0..self.steps).any(|k| altered.apply(scene, size(k)).is_some()) {
+            let is_possible = |size| altered.apply(scene, size).is_some();
+            if sizes(self.range, self.steps).any(is_possible) {
                 return Err(LabError::Unsuited(
                     "too few entries count to tell a place by; leave more in",
                 ));

@@ -222,4 +222,4 @@ impl Law {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

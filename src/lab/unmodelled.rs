@@ -27,14 +27,15 @@ pub(super) fn unmodelled(scene: &Scene) -> Vec<String> {
         })
         .map(ToString::to_string)
         .collect();
-    let lit = spots_that_light_the_view(scene);
+    let seen = seen(scene);
+    let lit = spots_that_light_the_view(scene, &seen);
     if lit > 0 && scene.max_bounces > 1 {
         found.push(format!(
             "light of two bounces, from {lit} of {} spots straight to the part of the wall that is seen",
             scene.laser.spots.len()
         ));
     }
-    let between = walls_that_light_the_view(scene);
+    let between = walls_that_light_the_view(scene, &seen);
     if !between.is_empty() && scene.max_bounces >= MODELLED {
         found.push(format!(
             "light of three bounces that {} sends from the spots to the part of the wall that is seen",
@@ -63,11 +64,10 @@ pub(super) fn unmodelled(scene: &Scene) -> Vec<String> {
 
 /// Spots in front of which a point of the view lies that faces them, as on a curved wall and on
 /// walls that meet.
-fn spots_that_light_the_view(scene: &Scene) -> usize {
+fn spots_that_light_the_view(scene: &Scene, seen: &[(ShapeId, Interaction)]) -> usize {
     if scene.laser.is_shining() {
         return 0;
     }
-    let seen = seen(scene);
     let lights = |spot: &&Spot| {
         let of = |to: &(ShapeId, Interaction)| lights(scene, (spot.surface, &spot.target), to);
         seen.iter().any(of)
@@ -76,11 +76,10 @@ fn spots_that_light_the_view(scene: &Scene) -> usize {
 }
 
 /// Walls that are not black with a point that a spot lights and that lights a point of the view.
-fn walls_that_light_the_view(scene: &Scene) -> Vec<String> {
+fn walls_that_light_the_view(scene: &Scene, seen: &[(ShapeId, Interaction)]) -> Vec<String> {
     if scene.laser.is_shining() {
         return Vec::new();
     }
-    let seen = seen(scene);
     let walls = scene.surfaces.iter().enumerate();
     let walls = walls.filter(|(_, s)| s.role == Role::Relay && !s.is_black());
     let passes_on = |(shape, wall): &(usize, &Surface)| {

@@ -18,6 +18,7 @@ use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::num::linalg::Cholesky;
+use crate::num::statistics::median;
 use crate::transport::Control;
 
 /// Noise of the first stage, over the light.
@@ -288,7 +289,7 @@ impl<'a> Problem<'a> {
 /// The noise of the first stage, over the stated one.
 pub(super) fn first(photographs: &Unexplained<'_>) -> f64 {
     let Unexplained { phi, stderr, .. } = *photographs;
-    let mut relative: Vec<f64> = match stderr {
+    let relative: Vec<f64> = match stderr {
         Some(stderr) => phi
             .iter()
             .zip(stderr)
@@ -301,9 +302,7 @@ pub(super) fn first(photographs: &Unexplained<'_>) -> f64 {
             .map(|x| 1.0 / x.abs())
             .collect(),
     };
-    relative.sort_by(f64::total_cmp);
-    let middle = relative.get(relative.len() / 2).copied();
-    middle.map_or(1.0, |noise| FIRST / noise)
+    median(relative).map_or(1.0, |noise| FIRST / noise)
 }
 
 /// The step of Levenberg and Marquardt; none where nothing changes with an unknown.

@@ -2,6 +2,7 @@
 
 use super::descent::State;
 use super::field::End;
+use super::geometry::Light;
 use super::left_out::Group;
 use super::{
     Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
@@ -50,11 +51,12 @@ impl CalibrationPlan {
         let covariance = information.inverse();
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
-        let chi2 = problem.chi2(best)?;
+        let light = problem.light(&best.values, problem.relative(best.factor), true)?;
+        let chi2 = problem.chi2(best, &light);
         let p = is_noise_known.then(|| known.by_noise(chi2, dof));
         // Of less than noise leaves nothing is told.
         let is_close = p.is_some_and(|p| fits_better(chi2 / dof, p));
-        let neighbours = problem.neighbours(best)?.filter(|_| !is_close);
+        let neighbours = problem.neighbours(best, &light)?.filter(|_| !is_close);
         let more_than_noise = p.is_none_or(|p| p < LEVEL) || neighbours.is_some();
         let robust = |scores: &Matrix| {
             let moved = &covariance * scores;
@@ -62,7 +64,12 @@ impl CalibrationPlan {
         };
         let enough_frames = problem.photographs.phi.ncols() > 2;
         let by = |group: Group| -> Result<Matrix, LabError> {
-            Ok(robust(&problem.left_out(best, &information, group)?))
+            Ok(robust(&problem.left_out(
+                best,
+                &light,
+                &information,
+                group,
+            )?))
         };
         let by_frames = (more_than_noise && enough_frames).then(|| by(Group::Frame));
         let by_frames = by_frames.transpose()?;
@@ -71,7 +78,7 @@ impl CalibrationPlan {
         let by_blocks = by_blocks.transpose()?;
         let scene = problem.geometry.scene;
         let names = self.names(problem);
-        let by_pictures = problem.by_pictures(best)?;
+        let by_pictures = problem.by_pictures(best, &light)?;
         let finer = problem.finer(best, &covariance)?;
         let elements = problem.finer_elements(model, best, control)?;
         let is_integrated =
@@ -195,7 +202,7 @@ impl CalibrationPlan {
 
 impl Problem<'_> {
     /// χ² of what is found: of counts by the errors of the light that is found.
-    fn chi2(&self, best: &State) -> Result<f64, LabError> {
+    fn chi2(&self, best: &State, light: &Light) -> f64 {
         let Unexplained {
             phi,
             stderr,
@@ -205,9 +212,8 @@ impl Problem<'_> {
         } = self.photographs;
         let is_alone = patterns.is_none() && self.common.is_none() && self.cosines.is_none();
         let Some(stderr) = stderr.filter(|_| certainty.counted.is_some() && is_alone) else {
-            return Ok(best.value.chi2);
+            return best.value.chi2;
         };
-        let light = self.light(&best.values, self.relative(best.factor), false)?;
         let of = |l: usize| -> f64 {
             let seen = light.frame(l) * &best.value.rho;
             let counts = self.photographs.roots(l).map(|root| root > 0.0);
@@ -217,18 +223,17 @@ impl Problem<'_> {
             });
             each.sum()
         };
-        Ok((0..phi.ncols()).map(of).sum())
+        (0..phi.ncols()).map(of).sum()
     }
 
     /// The correlation of what is left of neighbouring pixels, where it is more than chance, of a
     /// noise that is stated for each entry's own.
-    fn neighbours(&self, best: &State) -> Result<Option<f64>, LabError> {
+    fn neighbours(&self, best: &State, light: &Light) -> Result<Option<f64>, LabError> {
         let own = self.photographs.certainty.errors == Errors::Independent;
         if self.photographs.stderr.is_none() || self.cosines.is_some() || !own {
             return Ok(None);
         }
-        let light = self.light(&best.values, self.relative(best.factor), false)?;
-        let [beside, squares] = self.seen(best.factor).beside(&light, &best.value.rho)?;
+        let [beside, squares] = self.seen(best.factor).beside(light, &best.value.rho)?;
         Ok(correlated(beside, squares, best.value.count))
     }
 }

@@ -12,6 +12,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::descent::{Problem, State};
+use super::geometry::Light;
 use super::posterior::Columns;
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;
@@ -49,16 +50,16 @@ impl Problem<'_> {
     pub(super) fn left_out(
         &self,
         best: &State,
+        light: &Light,
         information: &Cholesky,
         group: Group,
     ) -> Result<Matrix, LabError> {
         let seen = self.seen(best.factor);
-        let light = self.light(&best.values, self.relative(best.factor), true)?;
         let (rho, covariance) = (&best.value.rho, &best.slope.covariance);
-        let columns = seen.columns(&light, rho, covariance, self.unknowns())?;
+        let columns = seen.columns(light, rho, covariance, self.unknowns())?;
         let half = best.value.factor.forward(best.prior.root.transpose());
         let rows = |(l, own): (usize, &Columns)| -> Result<Rows, LabError> {
-            let [y, a] = seen.frame(&light, l)?;
+            let [y, a] = seen.frame(light, l)?;
             let b = &own.b - product(&a, &best.slope.shift);
             let of_picture = product(&a, &half.transpose());
             let of_geometry = information.forward(b.transpose()).transpose();

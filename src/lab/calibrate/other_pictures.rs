@@ -13,6 +13,7 @@
 use nalgebra::DVector;
 
 use super::descent::{Problem, State};
+use super::geometry::Light;
 use super::picture::Prior;
 use crate::lab::error::LabError;
 use crate::num::linalg::Cholesky;
@@ -24,15 +25,18 @@ const EXCLUDED: f64 = 9.2;
 const STEP: f64 = 12.5;
 
 impl Problem<'_> {
-    /// The error of every unknown.
-    pub(super) fn by_pictures(&self, best: &State) -> Result<DVector<f64>, LabError> {
-        let light = self.light(&best.values, self.relative(best.factor), true)?;
-        let normal = self.seen(best.factor).normal(&light)?;
+    /// The error of every unknown, by the light at the estimate.
+    pub(super) fn by_pictures(
+        &self,
+        best: &State,
+        light: &Light,
+    ) -> Result<DVector<f64>, LabError> {
+        let normal = self.seen(best.factor).normal(light)?;
         let margin = EXCLUDED + STEP;
         let tried = Prior::plausible(self.pictures, &normal, self.is_scale_free, margin)?;
         let mut all: Vec<(f64, DVector<f64>)> = Vec::new();
         for prior in tried {
-            let state = self.state_by((&best.values, best.factor), (&light, &normal), prior)?;
+            let state = self.state_by((&best.values, best.factor), (light, &normal), prior)?;
             let slope = self.whole_slope(&state);
             let Some(information) = Cholesky::new(&self.information(&state.slope)) else {
                 continue;

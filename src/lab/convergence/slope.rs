@@ -15,6 +15,7 @@
 //! and the standard errors, which scatter less, whether there is one line at all.
 
 use super::curves::{Bend, Step};
+use crate::num::statistics::median;
 
 /// Root mean square of ln standard errors about a line above which there is none: twice what the
 /// scatter of 32 blocks, all entries alike, leaves of a line, 1/√62.
@@ -62,9 +63,7 @@ pub(super) fn bend(steps: &[Step]) -> Option<Bend> {
         )
     });
     let falls: Vec<_> = falls.collect();
-    let mut slopes: Vec<f64> = falls.iter().map(|fall| fall.0).collect();
-    slopes.sort_by(f64::total_cmp);
-    let middle = slopes[slopes.len() / 2];
+    let middle = median(falls.iter().map(|fall| fall.0).collect())?;
     let apart = |slope: f64| (slope - middle).abs();
     let most = falls
         .iter()

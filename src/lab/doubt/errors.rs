@@ -4,6 +4,7 @@ use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, neighbours_share, time
 use crate::lab::fit::{Fit, Judged};
 use crate::lab::pooled::ENOUGH_REPLICATES;
 use crate::num::digits::{figure, significant};
+use crate::num::statistics::median;
 use crate::recovery::{Choice, Method, Recovered};
 
 /// A standard error above which an element is not known: half of the range from 0 to 1.
@@ -151,10 +152,6 @@ pub(super) fn alike_untold(found: &Recovered, judged: &Judged) -> Option<String>
     } = found.choice
     else {
         return None;
-    };
-    let median = |mut all: Vec<f64>| -> Option<f64> {
-        all.sort_by(f64::total_cmp);
-        all.get(all.len() / 2).copied()
     };
     let own = median(found.standard_error.as_ref()?.iter().copied().collect())?;
     let is_scaled = found.nuisance.as_ref().is_some_and(|n| n.scale.is_some());

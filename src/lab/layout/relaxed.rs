@@ -81,11 +81,13 @@ impl Most {
 
     /// The largest Σ g_s v_s of such weights.
     fn largest(self, gains: &[f64], count: usize) -> f64 {
-        let mut sorted = gains.to_vec();
-        sorted.sort_by(|a, b| b.total_cmp(a));
         match self {
-            Self::One => sorted.iter().take(count).sum(),
-            Self::All => sorted.first().map_or(0.0, |most| count as f64 * most),
+            Self::One => {
+                let mut sorted = gains.to_vec();
+                sorted.sort_by(|a, b| b.total_cmp(a));
+                sorted.iter().take(count).sum()
+            }
+            Self::All => count as f64 * gains.iter().copied().fold(0.0, f64::max),
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::lab::misplaced::normal;
-use crate::lab::{Evidence, Noise, Residuals, Test, agree, recover_objects};
+use crate::lab::{Agreement, Evidence, Noise, Residuals, Test, agree, recover_objects};
 use crate::model::{Kernel, MatrixModel};
 use crate::num::control::Control;
 use crate::num::statistics::{binomial_interval, student_threshold};
@@ -23,6 +23,28 @@ pub(in crate::lab) fn repeated(
     let squares = all.iter().map(|x| (x - &mean).map(|d| d * d));
     let stderr = squares.sum::<Matrix>().map(|s| (s / (n - 1.0) / n).sqrt());
     [mean, stderr]
+}
+
+/// The verdict on a model at 5 %.
+pub(in crate::lab) fn judged(
+    phi: &Matrix,
+    stderr: &Matrix,
+    model: &Matrix,
+    known: Certainty,
+) -> Agreement {
+    let evidence = Evidence {
+        traced: phi,
+        stderr,
+        model,
+        bound: None,
+        left_out: None,
+        eliminated: None,
+    };
+    let test = Test {
+        significance: 0.05,
+        known,
+    };
+    agree(evidence, test, None).0
 }
 
 fn from(replicates: u32) -> Certainty {
@@ -245,21 +267,8 @@ fn right_light_is_rejected_no_oftener_than_is_said() {
     for seed in 0..draws {
         let [phi, stderr] = repeated(&exact, &sigma, count, 1000 + seed);
         let pooled = Pooled::of(&stderr, from(count), None).unwrap();
-        let judged = |model: &Matrix, stderr: &Matrix, known: Certainty| {
-            let evidence = Evidence {
-                traced: &phi,
-                stderr,
-                model,
-                bound: None,
-                left_out: None,
-                eliminated: None,
-            };
-            let test = Test {
-                significance: 0.05,
-                known,
-            };
-            agree(evidence, test, None).0
-        };
+        let judged =
+            |model: &Matrix, stderr: &Matrix, known: Certainty| judged(&phi, stderr, model, known);
         let mut residuals = Residuals::default();
         residuals.add(&phi, &exact, &pooled.stderr, pooled.certainty);
         let p = residuals.fit(0.0, pooled.certainty).unwrap().p;

@@ -10,7 +10,7 @@ use crate::lab::measured::Measured;
 use crate::lab::score::{Derivatives, Parameter};
 use crate::matrix::Matrix;
 use crate::model::Kernel;
-use crate::num::statistics::binomial_interval;
+use crate::num::statistics::{binomial_interval, median};
 use crate::scene::Scene;
 use crate::transport::{Estimator, Traced};
 
@@ -86,8 +86,6 @@ pub(super) fn row(
     plan: &PowerPlan,
 ) -> PowerRow {
     let count = |f: &dyn Fn(&Verdicts) -> bool| own.iter().filter(|v| f(v)).count() as u64;
-    let mut smallest: Vec<f64> = own.iter().map(|v| v.smallest_scale).collect();
-    smallest.sort_by(f64::total_cmp);
     let wrong = models.wrong.iter().enumerate();
     PowerRow {
         estimator: estimator.name().to_owned(),
@@ -103,10 +101,7 @@ pub(super) fn row(
                 rejected: count(&|v| v.rejected[i]),
             })
             .collect(),
-        smallest_scale: smallest
-            .get(smallest.len() / 2)
-            .copied()
-            .unwrap_or(f64::NAN),
+        smallest_scale: median(own.iter().map(|v| v.smallest_scale).collect()).unwrap_or(f64::NAN),
     }
 }
 

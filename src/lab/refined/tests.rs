@@ -1,10 +1,10 @@
 use super::*;
 use crate::lab::certainty::FOLLOWS_ENTRIES;
 use crate::lab::misplaced::normal;
-use crate::lab::pooled::tests::repeated;
+use crate::lab::pooled::tests::{judged, repeated};
 use crate::lab::{
-    Against, Certainty, Errors, Evidence, Integration, Measured, Noise, Residuals, Test, agree,
-    recover_objects, validate,
+    Against, Certainty, Errors, Integration, Measured, Noise, Residuals, Test, recover_objects,
+    validate,
 };
 use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
 use crate::num::control::Control;
@@ -12,6 +12,18 @@ use crate::num::statistics::binomial_interval;
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::{Method, Nuisance, Options};
 use crate::scene::Scene;
+
+/// Counts of this mean.
+pub(in crate::lab) fn counted(light: &Matrix, seed: u64) -> Matrix {
+    let key = Key {
+        seed,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let mut draw = Stream::new(Sampling::Pcg, key);
+    light.map(|mu| draw.poisson(mu))
+}
 
 fn law(powers: &[f64; 3], x: f64) -> f64 {
     powers[0] + powers[1] * x + powers[2] * x * x
@@ -138,14 +150,7 @@ fn a_verdict_takes_errors_as_well_as_photographs_tell_them() {
 #[test]
 fn counts_of_none_have_errors() {
     let light = Matrix::from_fn(48, 40, |p, l| 2.0 + 0.05 * p as f64 + 0.04 * l as f64);
-    let key = Key {
-        seed: 5,
-        spot: 0,
-        pixel: 0,
-        block: 0,
-    };
-    let mut draw = Stream::new(Sampling::Pcg, key);
-    let phi = light.map(|mu| draw.poisson(mu));
+    let phi = counted(&light, 5);
     let own = phi.map(f64::sqrt);
     for rows in [48, 6] {
         let [phi, own, light] = [&phi, &own, &light].map(|m| m.rows(0, rows).into_owned());
@@ -177,14 +182,7 @@ fn right_light_of_few_counts_is_rejected_no_oftener_than_is_said() {
         });
         let (mut alarms, mut misfits, mut skewed) = (0, 0, 0);
         for seed in 0..draws {
-            let key = Key {
-                seed,
-                spot: 0,
-                pixel: 0,
-                block: 0,
-            };
-            let mut draw = Stream::new(Sampling::Pcg, key);
-            let phi = light.map(|mu| draw.poisson(mu));
+            let phi = counted(&light, seed);
             let own = phi.map(f64::sqrt);
             let refined = Refined::of(&phi, &own, Certainty::STATED, None);
             let counted = refined.certainty.counted.unwrap();
@@ -195,19 +193,7 @@ fn right_light_of_few_counts_is_rejected_no_oftener_than_is_said() {
                     counted,
                     ..refined.certainty
                 };
-                let evidence = Evidence {
-                    traced: &phi,
-                    stderr: &stderr,
-                    model,
-                    bound: None,
-                    left_out: None,
-                    eliminated: None,
-                };
-                let test = Test {
-                    significance: 0.05,
-                    known,
-                };
-                agree(evidence, test, None).0.agrees
+                judged(&phi, &stderr, model, known).agrees
             };
             alarms += u64::from(!agrees(&light, true));
             skewed += u64::from(!agrees(&light, false));

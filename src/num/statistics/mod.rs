@@ -7,6 +7,7 @@ mod correlation;
 mod family;
 mod fisher;
 mod gamma;
+mod median;
 mod normal;
 mod student;
 
@@ -17,5 +18,6 @@ pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
 pub use fisher::fisher_sf;
 pub use gamma::{freedom_of_log_variance, pentagamma, trigamma};
+pub use median::median;
 pub use normal::{normal_two_sided, unskewed};
 pub use student::{student_threshold, student_to_normal};

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::lab::finding::Tone;
-use crate::num::stream::{Key, Stream};
+use crate::lab::refined::tests::counted;
 
 /// Light of 3 × 3 elements in black and white, W.
 fn checks(scene: &Scene) -> Matrix {
@@ -106,14 +106,7 @@ fn right_light_of_few_counts_is_not_refuted() {
     let (mut refuted, mut squares) = (0, 0.0);
     let draws = 40;
     for seed in 0..draws {
-        let key = Key {
-            seed,
-            spot: 0,
-            pixel: 0,
-            block: 0,
-        };
-        let mut random = Stream::new(Sampling::Pcg, key);
-        let counts = exact.map(|x| random.poisson(x / per_count));
+        let counts = counted(&(&exact / per_count), seed);
         let [phi, stderr] = [counts.clone(), counts.map(f64::sqrt)].map(|m| m * per_count);
         let plan = CalibrationPlan {
             elements: Some([2; 2]),
