@@ -168,7 +168,7 @@ impl Certainty {
     /// that `given`.
     pub(super) fn stderr(self, light: f64, given: f64) -> f64 {
         let own = self.counted.filter(|_| given > 0.0);
-        own.and_then(|own| own.stderr(light)).unwrap_or(given)
+        own.and_then(|own| own.law.stderr(light)).unwrap_or(given)
     }
 
     /// The same of such a z, where the noise over this standard error, W, is that of counts.

@@ -8,56 +8,38 @@
 //!
 //! so that of 3 counts one lies 4 standard errors off 17 times as often as a normal number does.
 
-use crate::matrix::Matrix;
+use super::light_law::LightLaw;
 
 /// What is known of such noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counted {
-    /// a, b and c, W², W and 1.
-    pub law: [f64; 3],
+    /// That of σ².
+    pub law: LightLaw,
     /// The mean κ of all entries.
     pub excess: f64,
 }
 
 impl Counted {
     /// Of these standard errors, W; none where nothing is counted.
-    pub(super) fn new<'a>(law: [f64; 3], stderr: impl Iterator<Item = &'a f64>) -> Option<Self> {
+    pub(super) fn new<'a>(law: LightLaw, stderr: impl Iterator<Item = &'a f64>) -> Option<Self> {
         let own = Self { law, excess: 0.0 };
         let counted = stderr.filter(|s| **s > 0.0);
         let (sum, count) =
             counted.fold((0.0, 0.0), |(sum, n), s| (sum + own.excess_of(*s), n + 1.0));
-        (law[1] > 0.0 && count > 0.0).then_some(Self {
+        (law.0[1] > 0.0 && count > 0.0).then_some(Self {
             excess: sum / count,
             ..own
         })
     }
 
-    /// σ of this light, W; none where the law leaves it none.
-    pub(super) fn stderr(self, light: f64) -> Option<f64> {
-        let [a, b, c] = self.law;
-        let variance = a + b * light + c * light * light;
-        (variance > 0.0).then(|| variance.sqrt())
-    }
-
-    /// Standard errors where this light is expected, W; those given where the law says nothing, and
-    /// where light has none.
-    pub(super) fn of_light(self, light: &Matrix, (phi, given): (&Matrix, &Matrix)) -> Matrix {
-        Matrix::from_fn(phi.nrows(), phi.ncols(), |p, l| {
-            let at = (p, l);
-            let is_told = given[at] > 0.0 || phi[at] == 0.0;
-            let own = self.stderr(light[at]).filter(|_| is_told);
-            own.unwrap_or(given[at])
-        })
-    }
-
     /// κ of an entry of this standard error, W.
     pub(super) fn excess_of(self, stderr: f64) -> f64 {
-        self.law[1] / stderr * self.skewness(stderr)
+        self.law.0[1] / stderr * self.skewness(stderr)
     }
 
     /// γ of an entry of this standard error, W.
     pub(super) fn skewness(self, stderr: f64) -> f64 {
-        let [a, b, c] = self.law;
+        let LightLaw([a, b, c]) = self.law;
         let of_light = (stderr * stderr - a).max(0.0);
         // The larger root of b x + c x².
         let light = 2.0 * of_light / (b + (b * b + 4.0 * c * of_light).max(0.0).sqrt());
@@ -66,9 +48,8 @@ impl Counted {
 
     /// The same of light over `scale`.
     pub(super) fn over(self, scale: f64) -> Self {
-        let [a, b, c] = self.law;
         Self {
-            law: [a / (scale * scale), b / scale.abs(), c],
+            law: self.law.over(scale),
             ..self
         }
     }
@@ -84,17 +65,17 @@ mod tests {
     fn cumulants_by_hand() {
         let counts = [4.0f64, 25.0];
         let stderr = counts.map(f64::sqrt);
-        let own = Counted::new([0.0, 1.0, 0.0], stderr.iter()).unwrap();
+        let own = Counted::new(LightLaw([0.0, 1.0, 0.0]), stderr.iter()).unwrap();
         for (n, s) in counts.iter().zip(stderr) {
             assert!((own.skewness(s) - 1.0 / n.sqrt()).abs() < 1e-15);
         }
         assert!((own.excess - 0.5 * (0.25 + 0.04)).abs() < 1e-15);
         let (x, [a, b, c]) = (30.0, [2.0, 0.5f64, 0.01]);
         let s = f64::sqrt(a + b * x + c * x * x);
-        let own = Counted::new([a, b, c], [s].iter()).unwrap();
+        let own = Counted::new(LightLaw([a, b, c]), [s].iter()).unwrap();
         assert!((own.skewness(s) - b * b * x / s.powi(3)).abs() < 1e-15);
         assert!((own.excess - b.powi(3) * x / s.powi(4)).abs() < 1e-15);
         assert!((own.over(3.0).skewness(s / 3.0) - own.skewness(s)).abs() < 1e-15);
-        assert!(Counted::new([a, 0.0, c], [s].iter()).is_none());
+        assert!(Counted::new(LightLaw([a, 0.0, c]), [s].iter()).is_none());
     }
 }

@@ -92,7 +92,7 @@ impl<'a> Grounds<'a> {
         let Measured { phi, beside, .. } = self.measured;
         let given = self.refined.stderr.as_ref();
         match self.test.known.counted.filter(|_| !beside.estimates()) {
-            Some(counted) => Cow::Owned(counted.of_light(model, (phi, given))),
+            Some(counted) => Cow::Owned(counted.law.stderrs(model, (phi, given))),
             None => Cow::Borrowed(given),
         }
     }

@@ -170,6 +170,7 @@ mod grounds;
 mod indicator;
 mod inversion;
 mod layout;
+mod light_law;
 mod likelier;
 mod limit;
 mod located;
@@ -250,6 +251,7 @@ pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
+pub use light_law::LightLaw;
 pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order};
 pub use measured::{Measured, ValidationError};
 pub use measures::Measures;

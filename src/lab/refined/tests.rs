@@ -187,7 +187,7 @@ fn right_light_of_few_counts_is_rejected_no_oftener_than_is_said() {
             let refined = Refined::of(&phi, &own, Certainty::STATED, None);
             let counted = refined.certainty.counted.unwrap();
             let agrees = |model: &Matrix, is_counted: bool| {
-                let stderr = counted.of_light(model, (&phi, &refined.stderr));
+                let stderr = counted.law.stderrs(model, (&phi, &refined.stderr));
                 let counted = Counted::new(counted.law, stderr.iter()).filter(|_| is_counted);
                 let known = Certainty {
                     counted,
