@@ -65,7 +65,9 @@ fn hint(error: &Error, words: &[String]) -> Option<String> {
             let cure = no_command(&root, text(ContextKind::InvalidSubcommand)?, &names);
             // Unless what it suggests is nearer.
             cure.or_else(|| {
-                let lists = format!("`{} --help` lists the commands", names.join(" "));
+                let asks = names.iter().filter(|name| *name != "help");
+                let asks: Vec<&str> = asks.map(String::as_str).collect();
+                let lists = format!("`{} --help` lists the commands", asks.join(" "));
                 (!has(ContextKind::SuggestedSubcommand)).then_some(lists)
             })
         }
@@ -217,6 +219,11 @@ fn missing(names: &[String], command: &Command, error: &Error) -> Option<String>
         return None;
     };
     let lacks = |name: &str| missing.iter().any(|m| m.contains(name));
+    if lacks("--camera-side") {
+        return Some(
+            "give the matrix of which this is a part too: `--camera-side C.npy`".to_owned(),
+        );
+    }
     if lacks("--output") && long(command, "output").is_some() {
         let what = long(command, "force").map_or("FOLDER", |_| "FILE");
         return Some(format!("say where to write: `{own} … -o {what}`"));

@@ -28,22 +28,6 @@ pub struct Chosen {
     pub repeat: Option<String>,
 }
 
-/// How an iterative solver ended.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Ended {
-    /// In words.
-    pub status: String,
-    /// Iterations.
-    pub iterations: u32,
-    /// Active-set steps after them.
-    pub refinements: usize,
-    /// ½ Σ w (Φ − C diag(ρ) D)², less what no ρ can change: ½ χ² where the weights are those of the
-    /// noise. With the penalty of `joint-tv`.
-    pub objective: f64,
-    /// Upper bound on its distance from the minimum.
-    pub gap: f64,
-}
-
 /// What was estimated beside the reflectances; each is there if it was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beside {
@@ -166,19 +150,6 @@ fn went_by(choice: Choice) -> (Option<&'static str>, BTreeMap<&'static str, f64>
         Choice::None => return (None, BTreeMap::new()),
     };
     (Some(rule), measures.into_iter().collect())
-}
-
-impl Ended {
-    /// Of a recovery by an iterative solver.
-    pub fn of(found: &Recovered) -> Option<Self> {
-        found.solver.as_ref().map(|s| Self {
-            status: s.status.clone(),
-            iterations: s.iterations,
-            refinements: s.refinements,
-            objective: s.objective,
-            gap: s.gap,
-        })
-    }
 }
 
 impl Beside {

@@ -179,6 +179,7 @@ mod measures;
 mod misplaced;
 mod noise;
 mod noise_law;
+mod normal;
 mod objects;
 mod occluder;
 pub mod options;
@@ -232,7 +233,7 @@ pub use calibrate::{
     Stage, Starts,
 };
 pub use certainty::{Certainty, Errors, PooledFrom};
-pub use chosen::{Beside, Chosen, Ended};
+pub use chosen::{Beside, Chosen};
 pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
 pub use counted::Counted;
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use std::ops::Range;
 
 use super::certainty::Certainty;
-use super::chosen::{Beside, Chosen, Ended, words};
+use super::chosen::{Beside, Chosen, words};
 use super::doubt::{contest, doubts};
 use super::fit::{Judged, Known};
 use super::likelier::likelier;
@@ -262,7 +262,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             rmse: scores.and_then(|s| s.rmse),
             parameter: words(found, explains),
             choice: Chosen::of(found),
-            solver: Ended::of(found),
+            solver: found.solver.clone(),
             estimated: Beside::of(found),
             likelier: None,
             log_evidence: found.log_evidence,

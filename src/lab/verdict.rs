@@ -71,6 +71,9 @@ impl Agreement {
 
     /// How far off, by what causes, and the test.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
+        if self.entries == 0 {
+            return vec![("test", "none: no entry counts".to_owned())];
+        }
         let bound = |b: EntryBound| {
             format!(
                 ", {} in pixel {}, spot {}",

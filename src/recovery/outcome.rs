@@ -3,6 +3,7 @@
 mod choice;
 
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 
 use super::{Bands, ErrorField, Estimated, Gains, Method, Patterns, Problem, RecoveryError, bands};
 pub use choice::{Choice, Parameter, Weighting};
@@ -11,7 +12,7 @@ pub use choice::{Choice, Parameter, Weighting};
 const ONE_VALUE: f64 = 1e-9;
 
 /// How an iterative solver ended.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Solver {
     /// In its own words.
     pub status: String,

@@ -110,7 +110,7 @@ pub(in crate::cli) enum Command {
     Scene(SceneArgs),
     /// Write a commented scene to start from
     New(NewArgs),
-    /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
+    /// Write a target picture, or list them: card, letters, siemens, edge, usaf, ramp
     Target(TargetArgs),
     /// Divide a render or a study into shards for many machines
     Plan(PlanArgs),

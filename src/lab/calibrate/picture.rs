@@ -9,6 +9,7 @@ use nalgebra::DVector;
 
 use crate::lab::error::LabError;
 use crate::lab::located::covariance_root;
+use crate::lab::normal::Normal;
 use crate::matrix::Matrix;
 use crate::num::linalg::{Cholesky, product, svd, tr_product};
 use crate::num::search::largest;
@@ -22,15 +23,6 @@ const LENGTHS: [f64; 4] = [0.0, 1.5, 6.0, 24.0];
 const HALF: f64 = 0.5;
 /// Decades about the first guess in which a free scale is looked for.
 const DECADES: f64 = 3.0;
-
-/// Normal equations of the reflectances, in units of the noise: ‖y − Aρ‖² = s − 2hᵀρ + ρᵀHρ.
-#[derive(Clone, Debug)]
-pub(super) struct Normal {
-    pub h: Matrix,
-    pub side: DVector<f64>,
-    pub square: f64,
-    pub count: f64,
-}
 
 /// A prior of pictures.
 #[derive(Clone, Debug)]

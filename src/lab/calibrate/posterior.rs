@@ -15,8 +15,9 @@ use rayon::prelude::*;
 
 use super::common::Common;
 use super::geometry::Light;
-use super::picture::{Normal, Prior, white};
+use super::picture::{Prior, white};
 use crate::lab::error::LabError;
+use crate::lab::normal::Normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::num::cosines::along_cosines;
@@ -95,7 +96,6 @@ impl Seen<'_> {
 
     /// The normal equations.
     pub(super) fn normal(&self, light: &Light) -> Result<Normal, LabError> {
-        let n = light.elements();
         let of = |l: usize| -> Result<Normal, LabError> {
             let [y, a] = self.frame(light, l)?;
             Ok(Normal {
@@ -107,19 +107,7 @@ impl Seen<'_> {
         };
         let frames = (0..self.frames()).into_par_iter().map(of);
         let frames: Vec<Normal> = frames.collect::<Result<_, _>>()?;
-        let none = Normal {
-            h: Matrix::zeros(n, n),
-            side: DVector::zeros(n),
-            square: 0.0,
-            count: 0.0,
-        };
-        let mut all = frames.iter().fold(none, |mut all, frame| {
-            all.h += &frame.h;
-            all.side += &frame.side;
-            all.square += frame.square;
-            all.count += frame.count;
-            all
-        });
+        let mut all = Normal::sum(frames.iter(), light.elements());
         all.count -= self.common.map_or(0.0, Common::directions);
         Ok(all)
     }

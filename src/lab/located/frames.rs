@@ -3,24 +3,11 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::lab::normal::Normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::linalg::{LinalgError, columns_times, svd, tr_product};
-
-/// What frame l says of the reflectances ρ, other light being whatever fits best:
-/// ‖√w (Φ_l − C diag(d_l) ρ)‖² = s − 2 hᵀρ + ρᵀHρ.
-#[derive(Clone, Debug)]
-pub(super) struct Frame {
-    /// H, elements × elements.
-    pub h: Matrix,
-    /// h.
-    pub side: DVector<f64>,
-    /// s: what the patterns leave of the frame.
-    pub square: f64,
-    /// Entries that count, less the directions of the patterns.
-    pub count: f64,
-}
 
 /// Terms of a model: Φ = Σ_s ρ_element(s) · camera\[·,s\] · laser\[s,·\].
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +66,7 @@ impl Side {
     }
 
     /// The frame, if it was lit as column `spot` of the laser's side says.
-    pub(super) fn lit(&self, terms: TermsOf<'_>, spot: usize) -> Frame {
+    pub(super) fn lit(&self, terms: TermsOf<'_>, spot: usize) -> Normal {
         let d = terms.laser.column(spot);
         let n = terms.elements;
         let (mut h, mut side) = (DMatrix::zeros(n, n), DVector::zeros(n));
@@ -89,7 +76,7 @@ impl Side {
                 h[(k, j)] += d[t] * self.gram[(t, s)] * d[s];
             }
         }
-        Frame {
+        Normal {
             h,
             side,
             square: self.square,
@@ -98,44 +85,15 @@ impl Side {
     }
 }
 
-impl Frame {
-    /// Of every frame, lit as the model says.
-    pub(super) fn all(of: &Unexplained<'_>, terms: TermsOf<'_>) -> Result<Vec<Self>, LinalgError> {
-        let frames = (0..of.phi.ncols()).into_par_iter();
-        frames
-            .map(|l| Ok(Side::new(of, terms.camera, l)?.lit(terms, l)))
-            .collect()
-    }
-
-    /// All of `frames` but one, each left out in turn.
-    pub(super) fn all_but_one(frames: &[Self], elements: usize) -> impl Iterator<Item = Self> + '_ {
-        (0..frames.len()).map(move |out| {
-            let others = frames.iter().enumerate().filter(move |(l, _)| *l != out);
-            Self::sum(others.map(|(_, frame)| frame), elements)
-        })
-    }
-
-    /// What the reflectances do not explain of it: s − 2 hᵀρ + ρᵀHρ.
-    pub(super) fn left(&self, rho: &DVector<f64>) -> f64 {
-        self.square - 2.0 * self.side.dot(rho) + rho.dot(&(&self.h * rho))
-    }
-
-    /// All of `frames` together.
-    pub(super) fn sum<'a>(frames: impl Iterator<Item = &'a Self>, elements: usize) -> Self {
-        let nothing = Self {
-            h: DMatrix::zeros(elements, elements),
-            side: DVector::zeros(elements),
-            square: 0.0,
-            count: 0.0,
-        };
-        frames.fold(nothing, |mut all, frame| {
-            all.h += &frame.h;
-            all.side += &frame.side;
-            all.square += frame.square;
-            all.count += frame.count;
-            all
-        })
-    }
+/// What every frame says, lit as the model says.
+pub(super) fn normals(
+    of: &Unexplained<'_>,
+    terms: TermsOf<'_>,
+) -> Result<Vec<Normal>, LinalgError> {
+    let frames = (0..of.phi.ncols()).into_par_iter();
+    frames
+        .map(|l| Ok(Side::new(of, terms.camera, l)?.lit(terms, l)))
+        .collect()
 }
 
 /// K^½ of the exponential covariance K = exp(−|x_i − x_j|/ℓ) of the elements' places:

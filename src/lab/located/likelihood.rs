@@ -2,7 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::frames::{Frame, Side, TermsOf};
+use super::frames::{Side, TermsOf};
+use crate::lab::normal::Normal;
 use crate::matrix::Matrix;
 use crate::num::linalg::{LinalgError, product, svd, tr_product};
 use crate::num::search::largest;
@@ -31,7 +32,7 @@ impl<'a> Spectrum<'a> {
     ///
     /// # Errors
     /// [`LinalgError`].
-    pub(super) fn new(all: &Frame, root: &'a Matrix) -> Result<Option<Self>, LinalgError> {
+    pub(super) fn new(all: &Normal, root: &'a Matrix) -> Result<Option<Self>, LinalgError> {
         let h = tr_product(root, &product(&all.h, root));
         if !(h.amax() > 0.0 && all.square > 0.0 && all.count > 1.0) {
             return Ok(None);
@@ -114,15 +115,15 @@ impl Fit {
         terms: TermsOf<'_>,
         root: &Matrix,
     ) -> Result<Option<Self>, LinalgError> {
-        let frames: Vec<Frame> = lit.map(|(side, spot)| side.lit(terms, spot)).collect();
-        Self::new(&Frame::sum(frames.iter(), terms.elements), root)
+        let frames: Vec<Normal> = lit.map(|(side, spot)| side.lit(terms, spot)).collect();
+        Self::new(&Normal::sum(frames.iter(), terms.elements), root)
     }
 
     /// The fit to `all` photographs with K^½ = `root`; none where there is no light.
     ///
     /// # Errors
     /// [`LinalgError`].
-    pub(super) fn new(all: &Frame, root: &Matrix) -> Result<Option<Self>, LinalgError> {
+    pub(super) fn new(all: &Normal, root: &Matrix) -> Result<Option<Self>, LinalgError> {
         let Some(found) = Spectrum::new(all, root)? else {
             return Ok(None);
         };

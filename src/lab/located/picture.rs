@@ -3,9 +3,9 @@
 use nalgebra::DVector;
 
 use super::Bright;
-use super::frames::Frame;
 use super::likelihood::{Spectrum, log_ratios};
 use super::place::jackknifed;
+use crate::lab::normal::Normal;
 use crate::matrix::Matrix;
 use crate::model::{ElementGrid, MatrixModel};
 use crate::num::linalg::LinalgError;
@@ -35,20 +35,21 @@ pub(super) struct Pictured {
 
 impl Pictured {
     /// From at least 3 frames, with each K^½ of `roots`; none of fewer, and without light.
-    pub(super) fn new(frames: &[Frame], roots: &[Matrix]) -> Result<Option<Self>, LinalgError> {
+    pub(super) fn new(frames: &[Normal], roots: &[Matrix]) -> Result<Option<Self>, LinalgError> {
         let Some(elements) = frames.first().map(|frame| frame.side.len()) else {
             return Ok(None);
         };
         if frames.len() < 3 {
             return Ok(None);
         }
-        let all = Frame::sum(frames.iter(), elements);
+        let all = Normal::sum(frames.iter(), elements);
         let mut best: Option<(Vec<Trial>, f64)> = None;
         for root in roots {
             let Some(whole) = Spectrum::new(&all, root)? else {
                 return Ok(None);
             };
-            let parts = Frame::all_but_one(frames, elements).map(|rest| Spectrum::new(&rest, root));
+            let parts =
+                Normal::all_but_one(frames, elements).map(|rest| Spectrum::new(&rest, root));
             let parts: Option<Vec<Spectrum<'_>>> = parts.collect::<Result<_, _>>()?;
             let Some(parts) = parts else {
                 return Ok(None);

@@ -1,11 +1,12 @@
 //! Photographs against the scene as it would be with one size.
 
+use crate::lab::normal::Normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::model::{Factors, MatrixModel};
 use crate::num::linalg::LinalgError;
 
-use super::frames::{Frame, TermsOf, covariance_root};
+use super::frames::{TermsOf, covariance_root, normals};
 use super::likelihood::Fit;
 
 /// Lengths ℓ of the prior, parts of the largest distance between elements.
@@ -49,7 +50,7 @@ impl Lengths {
 pub(super) fn frames_of(
     model: &MatrixModel,
     photographs: &Unexplained<'_>,
-) -> Result<Vec<Frame>, LinalgError> {
+) -> Result<Vec<Normal>, LinalgError> {
     let elements = model.albedo.len();
     let own: Vec<usize> = (0..elements).collect();
     let terms = match &model.factors {
@@ -61,7 +62,7 @@ pub(super) fn frames_of(
         },
         None => TermsOf::centres(model, &own),
     };
-    Frame::all(photographs, terms)
+    normals(photographs, terms)
 }
 
 /// The fits at one size.
@@ -85,7 +86,7 @@ impl Place {
     ) -> Result<Option<Self>, LinalgError> {
         let elements = model.albedo.len();
         let frames = frames_of(model, photographs)?;
-        let all = Frame::sum(frames.iter(), elements);
+        let all = Normal::sum(frames.iter(), elements);
         let mut found: Option<(Fit, &Matrix)> = None;
         for root in &lengths.roots {
             let Some(fit) = Fit::new(&all, root)? else {
@@ -103,7 +104,7 @@ impl Place {
         };
         let mut without = Vec::new();
         if each_out && frames.len() > 2 {
-            for rest in Frame::all_but_one(&frames, elements) {
+            for rest in Normal::all_but_one(&frames, elements) {
                 without.extend(Fit::new(&rest, root)?);
             }
         }

@@ -4,12 +4,13 @@ mod told;
 
 use nalgebra::DVector;
 
-use super::frames::{Frame, Side, TermsOf, covariance_root};
+use super::frames::{Side, TermsOf, covariance_root, normals};
 use super::likelihood::{Fit, Spectrum};
 use super::{Located, LocatedPlan};
 use crate::lab::Integration;
 use crate::lab::certainty::Certainty;
 use crate::lab::misplaced::normal;
+use crate::lab::normal::Normal;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::model::Occlusion;
@@ -121,8 +122,8 @@ impl Small {
 #[test]
 fn frames_are_the_normal_equations() {
     let small = Small::new();
-    let frames = Frame::all(&small.photographs(), small.terms()).unwrap();
-    let all = Frame::sum(frames.iter(), 4);
+    let frames = normals(&small.photographs(), small.terms()).unwrap();
+    let all = Normal::sum(frames.iter(), 4);
     let (data, model) = small.dense();
     let near = |a: &Matrix, b: &Matrix| assert!((a - b).amax() < 1e-10 * b.amax(), "{a}{b}");
     near(&all.h, &(model.transpose() * &model));
@@ -140,7 +141,7 @@ fn frames_are_the_normal_equations() {
         laser: Matrix::from_fn(8, 3, |s, _| small.laser[(s, 2)]),
         ..Small::new()
     };
-    let due = &Frame::all(&other.photographs(), other.terms()).unwrap()[0];
+    let due = &normals(&other.photographs(), other.terms()).unwrap()[0];
     near(&swapped.h, &due.h);
 }
 
@@ -148,9 +149,9 @@ fn frames_are_the_normal_equations() {
 #[test]
 fn the_likelihood_is_that_of_the_normal_distribution() {
     let small = Small::new();
-    let frames = Frame::all(&small.photographs(), small.terms()).unwrap();
+    let frames = normals(&small.photographs(), small.terms()).unwrap();
     let root = covariance_root(&PLACES, 1.5).unwrap();
-    let found = Fit::new(&Frame::sum(frames.iter(), 4), &root)
+    let found = Fit::new(&Normal::sum(frames.iter(), 4), &root)
         .unwrap()
         .unwrap();
     let (y, a) = small.dense();
@@ -174,7 +175,7 @@ fn the_likelihood_is_that_of_the_normal_distribution() {
     // The posterior mean and what it leaves, at that λ: (AᵀA + λK⁻¹)⁻¹ Aᵀy.
     let inverse = k.try_inverse().unwrap() * libm::exp(best);
     let rho = (a.transpose() * &a + inverse).try_inverse().unwrap() * (a.transpose() * &y);
-    let all = Frame::sum(frames.iter(), 4);
+    let all = Normal::sum(frames.iter(), 4);
     let own = Spectrum::new(&all, &root)
         .unwrap()
         .unwrap()

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::lab::chosen::{Beside, Chosen, Ended};
+use crate::lab::chosen::{Beside, Chosen};
 use crate::lab::fit::Fit;
 use crate::matrix::Matrix;
-use crate::recovery::Patterns;
+use crate::recovery::{Patterns, Solver};
 
 /// A recovered hidden surface.
 #[derive(Clone, Debug, Serialize)]
@@ -34,7 +34,7 @@ pub struct RecoveredObject {
     /// The same in numbers.
     pub choice: Chosen,
     /// How the solver ended; absent where none iterates.
-    pub solver: Option<Ended>,
+    pub solver: Option<Solver>,
     /// What was estimated beside the reflectances; absent where nothing was asked for.
     pub estimated: Option<Beside>,
     /// Of the picture that is expected to be the nearest to the truth, which assumption makes the
