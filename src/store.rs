@@ -23,7 +23,7 @@ mod temporary;
 
 pub use digest::{digest, digest_of, hex};
 pub use error::StoreError;
-pub use harmless::{harmless, harmless_json, shown_json};
+pub use harmless::{harmless, harmless_json, shell_word, shown_json};
 pub use lock::{FolderLock, LockError};
 pub use reading::{ReadError, ReadFault, open, read, start};
 pub use room::{Room, threads_that_fit};

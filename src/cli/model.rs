@@ -10,7 +10,7 @@ use super::cleanup::remove_named;
 use super::console::Console;
 use super::failure::Failure;
 use super::output;
-use super::run_folder::{MODEL, RunFolder, Z, is_of_model};
+use super::run_folder::{MODEL, REPORT, RunFolder, SUMMARY, Z, is_of_model};
 use crate::folder::{Record, write_scene};
 use crate::jobs::need;
 use crate::lab::Integration;
@@ -50,9 +50,16 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     // Which scene the matrices are of: nothing else in the folder says so if nothing is rendered
     // into it.
     write_scene(&args.output, &scene)?;
+    let of_verdict = [MODEL, SUMMARY].map(|name| args.output.join(name).exists()) == [true; 2];
     write(&args.output, &model, phi.as_ref(), None)?;
     Record::vouch_anew(&args.output, MODEL, is_of_model)?;
     let place = args.output.join(MODEL);
+    if of_verdict {
+        console.say(format!(
+            "{}: in the place of the model that {SUMMARY} and {REPORT} tell of; `phicam run` makes it anew",
+            place.display()
+        ));
+    }
     let product_error = model.product_error();
     let shape = |m: &Matrix| [m.nrows(), m.ncols()];
     let [g12, g23] = [&model.g12, &model.g23].map(shape);

@@ -8,6 +8,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::output;
 use crate::scene::{Builtin, builtins};
+use crate::store::shell_word;
 
 /// The commented scene.
 const START: &str = include_str!("new.toml");
@@ -20,9 +21,10 @@ pub(super) fn execute(args: &NewArgs, console: Console) -> Result<Outcome, Failu
         Some(from) => renamed(builtin(from)?.text, &name),
     };
     output::write_new(&path, text, args.force)?;
-    let path = path.display();
+    let [word, folder] = [&path.to_string_lossy(), &name[..]].map(shell_word);
     console.say(format!(
-        "{path}: a scene to start from; `phicam scene check {path}`, then `phicam run {path} -o {name}`"
+        "{}: a scene to start from; `phicam scene check {word}`, then `phicam run {word} -o {folder}`",
+        path.display()
     ));
     Ok(Outcome::Done)
 }

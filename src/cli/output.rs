@@ -9,6 +9,11 @@ use super::failure::Failure;
 use crate::store::{self, StoreError, write_whole};
 use crate::store::{harmless, harmless_json};
 
+/// What names of pictures and meshes end in.
+const PICTURES: [&str; 13] = [
+    "svg", "png", "jpg", "jpeg", "tif", "tiff", "exr", "pdf", "ply", "obj", "stl", "gltf", "glb",
+];
+
 /// A result on standard output, for people: names in it may be anyone's, and what a terminal would
 /// obey in them is spelled out.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
@@ -62,6 +67,22 @@ pub(super) fn refuse_taken(path: &Path, force: bool) -> Result<(), Failure> {
         return Ok(());
     }
     Err(StoreError::Taken { path }.into())
+}
+
+/// Refuses a name that ends as that of another kind of picture or mesh than is written: programs go by it.
+pub(super) fn refuse_other_kind(path: &Path, kind: &str) -> Result<(), Failure> {
+    let extension = path.extension().and_then(|e| e.to_str());
+    let extension = extension.unwrap_or_default().to_ascii_lowercase();
+    if extension == kind || !PICTURES.contains(&&extension[..]) {
+        return Ok(());
+    }
+    Err(Failure::new(
+        format!(
+            "{} would be named .{extension} and be {kind}",
+            path.display()
+        ),
+        format!("name it {}", path.with_extension(kind).display()),
+    ))
 }
 
 /// Writes a file, whole or not at all; one that is there is replaced if `force`.

@@ -13,6 +13,7 @@ use crate::report;
 pub(super) fn execute(args: &PreviewArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
     output::refuse_taken(&args.output, args.force)?;
+    output::refuse_other_kind(&args.output, "png")?;
     let options = ViewOptions {
         from: args.from.map(DVec3::from_array),
         to: args.to.map(DVec3::from_array),

@@ -46,6 +46,9 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             output,
             force,
         } => {
+            if let Some(path) = output {
+                output::refuse_other_kind(path, "svg")?;
+            }
             let scene = console.load_any_scene(scene)?;
             need::frames(&scene)?;
             console.warn(&scene);

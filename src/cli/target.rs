@@ -62,6 +62,8 @@ fn deliver(
     console: Console,
 ) -> Result<Outcome, Failure> {
     let path = args.output.as_deref().unwrap_or(Path::new(usual));
+    let kind = Path::new(usual).extension().and_then(|e| e.to_str());
+    output::refuse_other_kind(path, kind.unwrap_or_default())?;
     output::write_new(path, bytes, args.force)?;
     console.say(format!("{}: {what}", path.display()));
     Ok(Outcome::Done)

@@ -25,7 +25,10 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
     let given = given(args, console)?;
     let mut scene = given.scene;
     if let Some(by) = args.shift_spots {
-        scene = scene.with_shifted_spots(by)?;
+        scene = scene.with_shifted_spots(by).map_err(|e| {
+            let cause = format!("--shift-spots {},{}: {}", by[0], by[1], e.cause);
+            Failure::new(cause, "give a shift that leaves every spot on the wall")
+        })?;
     }
     need::verdict(&scene)?;
     let size = PhotographSize::of_scene(&scene);

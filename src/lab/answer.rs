@@ -7,7 +7,7 @@ use super::objects::RecoveredObject;
 use super::recoveries::{by_surface, determined};
 use super::results::RunResults;
 use super::summary::facts;
-use crate::num::digits::{figure, significant};
+use crate::num::digits::{figure, freedom, significant};
 use crate::num::summation::root_mean_square;
 
 /// More hidden surfaces than this are counted, not named.
@@ -173,7 +173,7 @@ fn certainty(pictures: &[&RecoveredObject]) -> Claim {
             let numbers = format!(
                 "χ²/dof {} over {} degrees of freedom, P {}",
                 significant(fit.chi2_per_dof, 4),
-                significant(fit.dof, 5),
+                freedom(fit.dof),
                 figure(fit.p, 2)
             );
             let (tone, words) = match (fit.fits, first.contradicted()) {

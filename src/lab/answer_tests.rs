@@ -29,7 +29,7 @@ fn the_answer_comes_in_the_order_of_the_questions() {
     let sure = about(&answer, "how sure");
     assert_eq!(sure.tone, Tone::Good);
     for words in [
-        "it fits the photographs: χ²/dof 1.250 over 24.000 degrees of freedom, P 0.20. ",
+        "it fits the photographs: χ²/dof 1.250 over 24 degrees of freedom, P 0.20. ",
         "determine 4.50 of 64 directions of the picture, by any method",
         // ½ √(1 − ¼)
         "is known to ± 0.43 afterwards (median; 0.43 to 0.43)",

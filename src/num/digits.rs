@@ -56,6 +56,14 @@ pub fn figure(x: f64, digits: usize) -> String {
     scientific(&significant(x, digits))
 }
 
+/// Degrees of freedom: five digits, a whole number as one.
+pub fn freedom(x: f64) -> String {
+    match x.fract() == 0.0 {
+        true => x.to_string(),
+        false => significant(x, 5),
+    }
+}
+
 /// The same of a number that may be missing: –.
 pub fn perhaps(x: Option<f64>, digits: usize) -> String {
     x.map_or("–".to_owned(), |x| figure(x, digits))

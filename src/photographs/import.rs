@@ -14,10 +14,10 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, copied, little_left, mirrored, misread, misstated, no_light, roughly,
-    rounded, shared, stretched, unsaid,
+    bent, by_own_light, copied, little_left, mirrored, misread, misstated, no_light, outside,
+    roughly, rounded, shared, stretched, unsaid,
 };
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 
 /// The scene with the spots whose positions the set lists, if it does.
 ///
@@ -29,7 +29,17 @@ pub fn scene_of(set: &Set, scene: Scene, folder: &Path) -> Result<Scene, Photogr
     let Some(places) = positions(&tables)? else {
         return Ok(scene);
     };
-    let scene = scene.with_listed_spots(&places)?;
+    let off = |e: SceneError| {
+        let cause = format!(
+            "the positions of the spots do not fit the scene: {}",
+            e.cause
+        );
+        refused(
+            cause,
+            "check the columns x and y of the list, or the keys `position`, along the axes of the scene's spots",
+        )
+    };
+    let scene = scene.with_listed_spots(&places).map_err(off)?;
     on_the_wall(&tables, &places, &scene)?;
     Ok(scene)
 }
@@ -109,9 +119,10 @@ pub fn import(
     warnings.extend(little_left(&left_out));
     warnings.extend(no_light(&columns.phi));
     let view = &scene.camera.view;
-    if placing.fitted.is_some() {
+    if let Some(fitted) = &placing.fitted {
         warnings.extend(mirrored(&placing.mapping, &scene.camera));
-        warnings.extend(placing.fitted.as_ref().and_then(misread));
+        warnings.extend(outside(&placing.marks, shots.size));
+        warnings.extend(misread(fitted, &placing.marks, set.camera));
     } else {
         let extent = set.crop.map(|c| [c.width, c.height]);
         let extent = extent.unwrap_or(shots.size.map(|n| n as f64));
@@ -125,7 +136,7 @@ pub fn import(
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
     }
     if noise.is_none() {
-        warnings.push("the noise is not known (one photograph a spot, and no `noise`): there is no standard error; recover weighs all entries alike, or with --noise".to_owned());
+        warnings.push("the noise is not known (no two photographs of a spot with pixels that count, and no `noise`): there is no standard error; recover weighs all entries alike, or with --noise".to_owned());
     }
     if reader.is_lossy && set.gamma.is_none() && set.response.is_none() {
         warnings.push("JPEG is neither linear nor without loss: give `gamma` or `response`, or photographs that the camera saves as they are".to_owned());

@@ -53,6 +53,14 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
         "gain",
         "gain_error",
     ];
+    if let [only] = &head[..]
+        && let Some(other) = [';', '\t'].into_iter().find(|c| only.contains(*c))
+    {
+        return Err(refused(
+            format!("{name} separates its columns by {other:?}"),
+            "separate them by commas; numbers have a point",
+        ));
+    }
     if let Some(odd) = head.iter().find(|h| !known.contains(&h.as_str())) {
         return Err(refused(
             format!("{name} has a column `{odd}`"),
@@ -69,7 +77,7 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
                     values.len(),
                     head.len()
                 ),
-                "give one value for each column; leave it empty where there is none",
+                "give one value for each column, empty where there is none; numbers have a point, and a comma ends a value",
             ));
         }
         let text = |key: &str| {

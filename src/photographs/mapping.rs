@@ -45,6 +45,17 @@ pub struct Fitted {
     pub mark_error: Option<f64>,
 }
 
+/// A mark without which the others lie nearest to a mapping of theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OddMark {
+    /// Its number among the marks, from 0.
+    pub at: usize,
+    /// How far from it the others' mapping has it, px.
+    pub off: f64,
+    /// The error of the others, as [`Fitted::mark_error`].
+    pub others: f64,
+}
+
 /// Fewest marks.
 const FEWEST: usize = 4;
 /// Relative size of the eighth singular value of the marks' equations below which they determine no
@@ -111,6 +122,28 @@ impl Mapping {
             mark_error: (marks.len() > FEWEST).then(|| (sum / (2.0 * n - 8.0)).sqrt()),
             residuals,
         })
+    }
+
+    /// The odd one of marks: least squares draws the mapping to a mark that is far off, so that
+    /// others lie further from it. None of five and fewer, and where no four of the others
+    /// determine a mapping: without any one of five, four fit exactly.
+    pub(super) fn odd_mark(marks: &[Mark], lens: Option<Lens>) -> Option<OddMark> {
+        let without = |at: usize| {
+            let mut others = marks.to_vec();
+            let mark = others.remove(at);
+            let fitted = Self::from_marks(&others, lens).ok()?;
+            let found = fitted
+                .mapping
+                .pixel(mark.wall)
+                .unwrap_or([f64::INFINITY; 2]);
+            Some(OddMark {
+                at,
+                off: libm::hypot(found[0] - mark.pixel[0], found[1] - mark.pixel[1]),
+                others: fitted.mark_error?,
+            })
+        };
+        let each = (0..marks.len()).filter_map(without);
+        each.min_by(|a, b| a.others.total_cmp(&b.others))
     }
 
     /// H·(a, b, 1)ᵀ.

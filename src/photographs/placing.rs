@@ -12,7 +12,9 @@ pub(super) const OFF_PLANE: f64 = 0.01;
 
 /// The place of the scene's pixels in the photographs.
 pub(super) struct Placing {
-    /// What the marks say, if there are any.
+    /// The marks, if there are any,
+    pub marks: Vec<Mark>,
+    /// and what they say.
     pub fitted: Option<Fitted>,
     pub mapping: Mapping,
     pub evenness: Evenness,
@@ -26,7 +28,11 @@ impl Placing {
         camera: &Camera,
         size: [usize; 2],
     ) -> Result<Self, PhotographError> {
-        let fitted = fitted(set, camera)?;
+        let marks = marks(set, camera)?;
+        let fitted = match &marks[..] {
+            [] => None,
+            marks => Some(Mapping::from_marks(marks, set.camera)?),
+        };
         let mapping = match (&fitted, set.crop) {
             (Some(fitted), _) => fitted.mapping,
             (None, Some(c)) => Mapping::upright([c.x, c.y], [c.width, c.height]),
@@ -39,6 +45,7 @@ impl Placing {
         };
         Ok(Self {
             footprints: Footprints::new(camera, &mapping, size, evenness)?,
+            marks,
             fitted,
             mapping,
             evenness,
@@ -46,11 +53,8 @@ impl Placing {
     }
 }
 
-/// The mapping of the set's marks, if it has any.
-fn fitted(set: &Set, camera: &Camera) -> Result<Option<Fitted>, PhotographError> {
-    if set.marks.is_empty() {
-        return Ok(None);
-    }
+/// The set's marks in view coordinates.
+fn marks(set: &Set, camera: &Camera) -> Result<Vec<Mark>, PhotographError> {
     let view = &camera.view;
     let normal = view.normal();
     let diagonal = (view.u() + view.v()).length();
@@ -58,7 +62,11 @@ fn fitted(set: &Set, camera: &Camera) -> Result<Option<Fitted>, PhotographError>
     for (k, mark) in set.marks.iter().enumerate() {
         let odd = || {
             refused(
-                format!("mark {k} at {:?} is no point of the wall", mark.wall),
+                format!(
+                    "the {}. of the marks, at {:?}, is no point of the wall",
+                    k + 1,
+                    mark.wall
+                ),
                 "give x and y, or x, y and z, of a point in the plane of the scene's view",
             )
         };
@@ -84,5 +92,5 @@ fn fitted(set: &Set, camera: &Camera) -> Result<Option<Fitted>, PhotographError>
             wall: view.coordinates(DVec3::new(x, y, z)),
         });
     }
-    Mapping::from_marks(&marks, set.camera).map(Some)
+    Ok(marks)
 }

@@ -236,7 +236,11 @@ impl Set {
     /// # Errors
     /// [`PhotographError`] with line, cause and cure.
     pub fn parse(source: &str, text: &str) -> Result<Self, PhotographError> {
-        Ok(read_toml(source, text, "see `phicam import --help`")?)
+        Ok(read_toml(
+            source,
+            text,
+            "see `phicam import --help`; numbers have no unit: exposure is in s, halo in the scene's unit",
+        )?)
     }
 
     /// The camera's noise, where it is given.

@@ -191,7 +191,10 @@ fn too_many(name: &str, spot: Option<usize>, spots: usize) -> PhotographError {
         }
         None => format!("{name} comes after the photographs of all {spots} spots of the scene"),
     };
-    refused(cause, "check the scene's spots, `repeats` and the list")
+    refused(
+        cause,
+        "check the scene's spots, `repeats` and the list; each page of a file is a photograph",
+    )
 }
 
 #[cfg(test)]

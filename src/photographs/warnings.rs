@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::footprints::Evenness;
 use super::left_out::LeftOut;
-use super::mapping::{Fitted, Mapping};
+use super::lens::Lens;
+use super::mapping::{Fitted, Mapping, Mark};
 use super::noise::{FITS, PhotonTransferFit};
 use super::placing::Placing;
 use super::read::SourceFile;
@@ -15,6 +16,8 @@ use crate::scene::Camera;
 
 /// Error of a mark, px, above which it was not read where it is.
 const MISREAD: f64 = 1.0;
+/// Part of the marks' error that is left to the others without one that is to be blamed.
+const ODD: f64 = 0.3;
 /// How far from square the pixels of a view without marks may be.
 const STRETCH: f64 = 0.02;
 /// Part of a standard error from which on what all entries share is told.
@@ -105,16 +108,38 @@ pub(super) fn mirrored(mapping: &Mapping, camera: &Camera) -> Option<String> {
 }
 
 /// That marks do not lie where any mapping has them.
-pub(super) fn misread(fitted: &Fitted) -> Option<String> {
+pub(super) fn misread(fitted: &Fitted, marks: &[Mark], lens: Option<Lens>) -> Option<String> {
     let error = fitted.mark_error.filter(|error| *error > MISREAD)?;
-    let each = fitted.residuals.iter().enumerate();
-    let (worst, off) = each.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let odd = Mapping::odd_mark(marks, lens).filter(|odd| odd.others < ODD * error);
+    let which = match odd {
+        Some(odd) => format!(
+            "; without the {}. of the list, {} px from where the others have it, these lie {} px off: check its pixel and place",
+            odd.at + 1,
+            figure(odd.off, 2),
+            figure(odd.others, 2)
+        ),
+        None => ", and no single one explains it: check the pixels and places of all".to_owned(),
+    };
     Some(format!(
-        "the marks lie {} px off where the mapping has them, the {}. of the list {} px: check its pixel and place, \
-         and the scene's camera and lens; what that moves of the light is in no standard error",
-        figure(error, 2),
-        worst + 1,
-        figure(*off, 2)
+        "the marks lie {} px off where the mapping has them{which}, and the scene's camera and lens; what that moves \
+         of the light is in no standard error",
+        figure(error, 2)
+    ))
+}
+
+/// That a mark was found where the photographs of this size have no pixel.
+pub(super) fn outside(marks: &[Mark], size: [usize; 2]) -> Option<String> {
+    let is_within = |mark: &Mark| {
+        let mut axes = mark.pixel.into_iter().zip(size);
+        axes.all(|(x, n)| (-0.5..=n as f64 - 0.5).contains(&x))
+    };
+    let at = marks.iter().position(|mark| !is_within(mark))?;
+    let [u, v] = marks[at].pixel;
+    Some(format!(
+        "the {}. of the marks, at pixel ({u}, {v}), is outside of the photographs of {} × {} px: check its pixel, columns first",
+        at + 1,
+        size[0],
+        size[1]
     ))
 }
 
@@ -228,17 +253,18 @@ mod tests {
     use super::*;
     use crate::photographs::mapping::Mark;
 
-    /// Marks of a perspective, one of twelve of which is read 30 px beside its place: it is named.
-    /// With all where they are nothing is said.
+    /// Marks of a perspective, one of twelve of which is read 30 or 1000 px beside its place: it is
+    /// named, though the mapping is drawn to it. With all where they are nothing is said, and where
+    /// two are off none is blamed.
     #[test]
     fn a_mark_that_was_misread_is_named() {
         let place = |k: usize| [0.2 + 0.3 * (k % 4) as f64, 0.1 + 0.4 * (k / 4) as f64];
-        let marks = |off: f64| -> Vec<Mark> {
+        let marks = |off: f64, odd: &[usize]| -> Vec<Mark> {
             (0..12)
                 .map(|k| {
                     let [x, y] = place(k);
                     let w = 1.0 + 0.2 * x + 0.1 * y;
-                    let beside = if k == 6 { off } else { 0.0 };
+                    let beside = if odd.contains(&k) { off } else { 0.0 };
                     Mark {
                         pixel: [(100.0 + 300.0 * x) / w + beside, (900.0 - 400.0 * y) / w],
                         wall: [x, y],
@@ -246,10 +272,23 @@ mod tests {
                 })
                 .collect()
         };
-        let told = |off| misread(&Mapping::from_marks(&marks(off), None).unwrap());
-        assert_eq!(told(0.0), None);
-        let words = told(30.0).unwrap();
-        assert!(words.contains("the 7. of the list"), "{words}");
+        let told = |off, odd: &[usize]| {
+            let marks = marks(off, odd);
+            misread(&Mapping::from_marks(&marks, None).unwrap(), &marks, None)
+        };
+        assert_eq!(told(0.0, &[6]), None);
+        for k in 0..12 {
+            for off in [30.0, 1000.0] {
+                let words = told(off, &[k]).unwrap();
+                let name = format!("without the {}. of the list, {off:.0}", k + 1);
+                assert!(words.contains(&name), "{words}");
+            }
+        }
+        let words = told(30.0, &[2, 7]).unwrap();
+        assert!(words.contains("no single one"), "{words}");
+        assert_eq!(outside(&marks(0.0, &[]), [400, 901]), None);
+        let words = outside(&marks(0.0, &[]), [400, 850]).unwrap();
+        assert!(words.contains("the 1. of the marks"), "{words}");
     }
 
     /// A file that stands twice under two names is told, and one that is read twice is not.

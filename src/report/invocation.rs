@@ -4,6 +4,7 @@ use super::page::framed;
 use super::run::{is_builtin, scene_text};
 use super::svg::escape;
 use crate::scene::Scene;
+use crate::store::shell_word;
 
 /// How a finding was asked for.
 #[derive(Clone, Debug)]
@@ -24,9 +25,9 @@ impl Invocation {
     /// The command that repeats it.
     fn command(&self) -> String {
         let mut words = vec!["phicam".to_owned()];
-        words.extend(self.command.iter().map(|word| quoted(word)));
+        words.extend(self.command.iter().map(|word| shell_word(word)));
         for (option, value) in &self.options {
-            words.extend([option.clone(), quoted(value)]);
+            words.extend([option.clone(), shell_word(value)]);
         }
         words.join(" ")
     }
@@ -63,15 +64,5 @@ impl Invocation {
             escape(&self.command()),
             scene_text(&self.scene)
         )
-    }
-}
-
-/// A word for a shell.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_-+=./:,@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }

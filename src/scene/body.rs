@@ -193,6 +193,17 @@ impl Meshes {
             *p *= stretch.unwrap_or(DVec3::ONE);
         }
         let (mut triangles, defects) = triangles.mended();
+        if triangles.triangles.is_empty() && defects.faces > 0 {
+            let cause = format!(
+                "none of the {} triangles can be used: {} have a corner that is not there or no finite number, {} no area",
+                defects.faces, defects.not_finite, defects.degenerate
+            );
+            return Err(Fault::new(
+                [at.clone()],
+                cause,
+                "mend the mesh, or use another",
+            ));
+        }
         let told = Told {
             defects,
             bare: triangles.bare.take(),

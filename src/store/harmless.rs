@@ -22,6 +22,16 @@ pub fn harmless(text: &str) -> String {
     out
 }
 
+/// A word of a command line as a shell takes it: in quotes where it has to be.
+pub fn shell_word(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-+=./:,@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
 /// The same JSON without any such character, in which they can stand in strings only (but line
 /// feeds and tabs, which JSON may have between values).
 pub fn harmless_json(json: &str) -> String {

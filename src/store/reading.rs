@@ -67,6 +67,11 @@ impl ReadError {
         Self { path, fault }
     }
 
+    /// Whether this user may not read it.
+    pub fn is_denied(&self) -> bool {
+        matches!(&self.fault, ReadFault::System(e) if e.kind() == ErrorKind::PermissionDenied)
+    }
+
     /// Whether nothing is where it was looked for: neither the file nor, maybe, its folder.
     pub fn is_missing(&self) -> bool {
         matches!(&self.fault, ReadFault::System(e) if super::is_missing(e))

@@ -116,6 +116,9 @@ fn a_new_scene_is_checked_and_computed() {
     );
     let _ = workspace.phicam("expose out").exits(0);
     workspace.refuses("new corner", &["corner.toml is there already", "--force"]);
+    let odd = workspace.phicam("new corner(2)").exits(0);
+    let next = "`phicam run 'corner(2).toml' -o 'corner(2)'`";
+    assert!(odd.stderr.contains(next), "{}", odd.account());
     let _ = workspace
         .phicam("new corner.toml --from card --force")
         .exits(0);

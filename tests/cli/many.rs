@@ -66,6 +66,11 @@ fn merge_refused(workspace: &Workspace, code: i32, words: &[&str]) {
 fn refused(workspace: &Workspace, line: &str, code: i32, words: &[&str]) {
     let before = workspace.contents("");
     let ended: Ended = workspace.phicam(line).exits(code);
+    assert!(
+        !ended.stderr.contains("error: error"),
+        "{}",
+        ended.account()
+    );
     for word in words {
         assert!(
             ended.stderr.contains(word),

@@ -226,6 +226,20 @@ const MISTAKES: &[(&str, &[&str])] = &[
     ("new tiny", &["tiny.toml is there already", "--force"]),
     ("new mine --from bensh", &["bensh", "bench"]),
     ("completions tcsh", &["tcsh", "bash"]),
+    ("help nonsense", &["'nonsense'", "`phicam --help`"]),
+    (
+        "scene show tiny.toml -o tiny.png",
+        &["be svg", "name it tiny.svg"],
+    ),
+    ("target edge -o edge.jpg", &["be png", "name it edge.png"]),
+    (
+        "validate done --shift-spots 100,0",
+        &["--shift-spots 100,0", "every spot on the wall"],
+    ),
+    (
+        "recover done --laser-side d.npy --phi done/phi.npy",
+        &["--camera-side", "`--camera-side C.npy`"],
+    ),
     ("man plain.txt", &["plain.txt is a file, not a folder"]),
 ];
 

@@ -196,7 +196,9 @@ fn the_deviations_of_a_run_outlive_a_model_that_is_not_written() {
     let ended = workspace.phicam_after("ulimit -f 16", line).exits(2);
     assert!(ended.stderr.contains("g12.npy"), "{}", ended.account());
     assert_same(&before, &workspace.contents("done/model"), line);
-    let _ = workspace.phicam(line).exits(0);
+    let ended = workspace.phicam(line).exits(0);
+    let words = "in the place of the model that summary.json and report.html tell of";
+    assert!(ended.stderr.contains(words), "{}", ended.account());
     assert!(!workspace.path("done/model/z.npy").exists());
 }
 

@@ -118,7 +118,7 @@ pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
 pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
     numbers(&text.replacen("..", ",", 1))
         .filter(|[low, high]| low < high)
-        .ok_or_else(|| "write it as LOW,HIGH with LOW below HIGH, e.g. 0,2e-12".to_owned())
+        .ok_or_else(|| "write it as LOW,HIGH with LOW below HIGH, e.g. -0.5,2".to_owned())
 }
 
 /// "X,Y,Z", finite.

@@ -154,7 +154,10 @@ fn parsed(arguments: impl Iterator<Item = String>) -> Result<Args, Failure> {
     // Where the files go is said by who merges.
     let output = ["-o".to_owned(), ".".to_owned()];
     let args = Args::try_parse_from(program.chain(arguments).chain(output));
-    args.map_err(|error| Failure::Usage(error.to_string()))
+    args.map_err(|error| {
+        let words = error.to_string();
+        Failure::Usage(words.strip_prefix("error: ").unwrap_or(&words).to_owned())
+    })
 }
 
 #[cfg(test)]

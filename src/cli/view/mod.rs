@@ -46,6 +46,7 @@ pub(super) fn execute(args: &ViewArgs, console: Console) -> Result<Outcome, Fail
         Some(Terminal::Blocks | Terminal::Auto) => output::draw(&shown.blocks(columns))?,
         None => {
             let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
+            output::refuse_other_kind(&path, "png")?;
             let png = png()?;
             output::write_new(&path, &png, args.force)?;
             console.say(format!("{}: written", path.display()));

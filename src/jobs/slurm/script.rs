@@ -1,5 +1,7 @@
 //! The texts of the job scripts.
 
+use crate::store::shell_word;
+
 /// Restarts that a shard may ask for after an error of the disk (exit code 74).
 const RESTARTS_DISK: u32 = 2;
 /// Restarts that a shard may ask for after the warning that its time is over (exit code 75).
@@ -16,11 +18,7 @@ pub(super) fn quote(text: &str) -> String {
         };
         return format!("$'{}'", text.bytes().map(byte).collect::<String>());
     }
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_-+=./:,@%".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        return text.to_owned();
-    }
-    format!("'{}'", text.replace('\'', r"'\''"))
+    shell_word(text)
 }
 
 /// The script of the array. Its argument is what the task's number in the array is added to, since

@@ -9,6 +9,7 @@ use crate::lab::LabError;
 use crate::metrics::mtf_raw;
 use crate::model::{MatrixModel, Occlusion};
 use crate::recovery::{Method, Options, recover};
+use crate::transport::Control;
 
 /// One bench with one object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -65,6 +66,7 @@ pub(super) fn configurations(
     site: &Site,
     arrangement: &Arrangement,
     boards: &[usize],
+    control: Control<'_>,
 ) -> Result<Vec<Configuration>, LabError> {
     let mut found = Vec::new();
     let mut shared: Option<Projection> = None;
@@ -72,6 +74,7 @@ pub(super) fn configurations(
         .iter()
         .filter(|b| arrangement.elements.is_multiple_of(**b))
     {
+        control.check()?;
         let Some(model) = model(site, arrangement, board)? else {
             return Ok(found);
         };

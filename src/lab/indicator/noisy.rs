@@ -6,11 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::IndicatorPlan;
 use super::ratio::Pair;
+use crate::lab::LabError;
 use crate::lab::ensemble::{Photographs, Spread};
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Parameter, Recovered, RecoveryError, Uncertainty};
+use crate::recovery::{Method, Options, Parameter, Recovered, Uncertainty};
+use crate::transport::Control;
 
 /// One method at one noise on one configuration.
 #[derive(Clone, Debug, Serialize)]
@@ -86,26 +88,35 @@ pub(super) fn pairs(plan: &IndicatorPlan) -> Vec<(Method, f64)> {
 }
 
 /// Every method at every noise on one model, in the order of [`pairs`].
-pub(super) fn compared(model: &MatrixModel, plan: &IndicatorPlan) -> Vec<NoisyOutcome> {
+///
+/// # Errors
+/// [`LabError::Stopped`].
+pub(super) fn compared(
+    model: &MatrixModel,
+    plan: &IndicatorPlan,
+    control: Control<'_>,
+) -> Result<Vec<NoisyOutcome>, LabError> {
     let exact = model.phi();
     pairs(plan)
         .par_iter()
-        .map(|&(method, noise)| {
-            let found = compare(model, &exact, method, noise, plan);
-            found.unwrap_or_else(|e| NoisyOutcome::Failed {
-                reason: e.to_string(),
-            })
-        })
+        .map(
+            |&(method, noise)| match compare(model, &exact, (method, noise), plan, control) {
+                Err(LabError::Recovery(e)) => Ok(NoisyOutcome::Failed {
+                    reason: e.to_string(),
+                }),
+                other => other,
+            },
+        )
         .collect()
 }
 
 fn compare(
     model: &MatrixModel,
     exact: &Matrix,
-    method: Method,
-    noise: f64,
+    (method, noise): (Method, f64),
     plan: &IndicatorPlan,
-) -> Result<NoisyOutcome, RecoveryError> {
+    control: Control<'_>,
+) -> Result<NoisyOutcome, LabError> {
     let photographs = |seed| Photographs::relative(exact, noise, seed);
     // A parameter that is chosen from the data makes a method non-linear: one draw outside the
     // sample fixes it.
@@ -134,6 +145,7 @@ fn compare(
     };
     let mut values = Vec::new();
     for seed in (0..plan.seeds).map(|k| plan.first_seed.wrapping_add(k)) {
+        control.check()?;
         let found = photographs(seed).recover(model, method, &options)?;
         values.extend(mtf_raw(found.reflectance.as_slice(), truth));
     }
@@ -251,7 +263,7 @@ mod tests {
             noise: vec![1e-4],
             ..small_plan()
         };
-        let found = compared(&model, &plan);
+        let found = compared(&model, &plan, Control::none()).unwrap();
         assert!(matches!(found[0], NoisyOutcome::NoCovariance), "{found:?}");
     }
 }

@@ -144,9 +144,15 @@ impl IndicatorTasks {
     }
 
     /// The bench of an arrangement and a board, under noise.
-    fn noisy(&self, (k, board): (usize, usize)) -> Result<Vec<NoisyOutcome>, LabError> {
-        let found = model(&self.site, &self.arrangements[k], board)?;
-        Ok(found.map_or_else(Vec::new, |model| noisy::compared(&model, &self.plan)))
+    fn noisy(
+        &self,
+        (k, board): (usize, usize),
+        control: Control<'_>,
+    ) -> Result<Vec<NoisyOutcome>, LabError> {
+        match model(&self.site, &self.arrangements[k], board)? {
+            Some(model) => noisy::compared(&model, &self.plan, control),
+            None => Ok(Vec::new()),
+        }
     }
 }
 
@@ -171,10 +177,15 @@ impl Study for IndicatorTasks {
         Ok(())
     }
 
-    fn task(&self, (): &(), index: usize, _: Control<'_>) -> Result<Output, LabError> {
+    fn task(&self, (): &(), index: usize, control: Control<'_>) -> Result<Output, LabError> {
         Ok(match self.arrangements.get(index) {
-            Some(own) => Output::Swept(configurations(&self.site, own, &self.plan.boards)?),
-            None => Output::Noisy(self.noisy(self.chosen[index - self.arrangements.len()])?),
+            Some(own) => {
+                Output::Swept(configurations(&self.site, own, &self.plan.boards, control)?)
+            }
+            None => {
+                let bench = self.chosen[index - self.arrangements.len()];
+                Output::Noisy(self.noisy(bench, control)?)
+            }
         })
     }
 
@@ -216,7 +227,7 @@ impl Study for IndicatorTasks {
             // chosen ones.
             let compared = match expected.next() {
                 Some((own, compared)) if *own == bench => compared,
-                _ => self.noisy(bench)?,
+                _ => self.noisy(bench, Control::none())?,
             };
             let pairs = noisy::pairs(&self.plan).into_iter().zip(compared);
             points.extend(pairs.map(|((method, noise), compared)| NoisyPoint {

@@ -16,6 +16,8 @@ const CURE: &str = "mend the line, or export the mesh again";
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, MeshFileError> {
     let mut body = Body::default();
     let mut joined = Vec::new();
+    // A byte order mark belongs to no statement.
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     for (i, line) in bytes.split(|b| *b == b'\n').enumerate() {
         let line = line.strip_suffix(b"\r").unwrap_or(line);
         if let Some(start) = line.strip_suffix(b"\\") {

@@ -75,13 +75,16 @@ pub(super) fn shape(
             })?;
             Ok(Shape::Sphere(sphere))
         }
-        _ => Err(Fault::new(
+        shapes => Err(Fault::new(
             keys![],
             format!(
                 "surface `{}` needs exactly one of `rectangle`, `disc`, `sphere` and `mesh`",
                 table.name
             ),
-            "add `rectangle = { corner = […], u = […], v = […] }`",
+            match shapes {
+                (None, None, None, None) => "add `rectangle = { corner = […], u = […], v = […] }`",
+                _ => "keep one of them",
+            },
         )),
     }
 }

@@ -16,6 +16,12 @@ fn every_format_gives_the_unit_cube() {
 #[test]
 fn obj_corners_carry_their_texture_coordinates() {
     let mesh = alone("cube.obj", obj_text().as_bytes()).unwrap();
+    // A byte order mark is no part of the first statement.
+    let marked = "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n";
+    assert_eq!(
+        alone("a.obj", marked.as_bytes()).unwrap().positions.len(),
+        4
+    );
     let uv = mesh.uv.unwrap();
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     for pair in uv.chunks(2) {
