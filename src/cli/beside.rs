@@ -7,7 +7,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_other_shape};
 use super::recover_memory;
-use super::run_folder::{LEFT_OUT, SATURATED};
+use super::run_folder::{LEFT_OUT, SATURATED, TAILS};
 use super::settings::within;
 use crate::folder::Origin;
 use crate::lab::{Certainty, Errors, polynomials};
@@ -242,6 +242,31 @@ pub(super) fn warn_of_exact(
             phi.len()
         ));
     }
+}
+
+/// Tells of standard errors of traced light that are not to be trusted, by what lies beside them.
+pub(super) fn warn_of_untrusted(
+    stderr: &Path,
+    of: &PhotographSize,
+    console: Console,
+) -> Result<(), Failure> {
+    let tails = stderr.with_file_name(TAILS);
+    if !tails.exists() {
+        return Ok(());
+    }
+    let flags = of.read(&tails)?;
+    let count = flags.iter().filter(|x| **x != 0.0).count();
+    if count > 0 {
+        console.say(format!(
+            "warning: of {count} of {} entries the standard error is not to be trusted, says {}: whether a picture \
+             fits, and its errors, count them like others; render with more --samples, or leave them out of joint \
+             methods (--left-out {})",
+            flags.len(),
+            tails.display(),
+            tails.display()
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses deviations without a meaning.

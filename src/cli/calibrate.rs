@@ -6,6 +6,7 @@ use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
 use super::load_run::{read_bare_scene, read_run};
+use super::output;
 use super::process::pool;
 use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
 use super::spelled::Spelled;
@@ -51,6 +52,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         .output
         .clone()
         .unwrap_or_else(|| args.dir.join(CALIBRATED));
+    output::refuse_run(&output)?;
     let lock = RunFolder::lock(&output, "phicam calibrate")?;
     let pool = pool(args.threads)?;
     let what = format!("calibrate {}", scene.name);

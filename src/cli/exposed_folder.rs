@@ -57,11 +57,7 @@ impl ExposedFolder {
     /// What stands in the way of its files shows before anything is written. The folder of a run is
     /// not overwritten.
     pub(super) fn refuse_obstacles(&self) -> Result<(), Failure> {
-        if self.path.join(Record::FILE).exists() {
-            let path = self.path.display();
-            let cause = format!("{path} is the folder of a run, with its clean flux");
-            return Err(Failure::new(cause, "choose another folder (-o)"));
-        }
+        output::refuse_run(&self.path)?;
         output::refuse_obstacles(&self.path, &[COUNTS], &FILES)
     }
 

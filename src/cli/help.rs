@@ -47,7 +47,7 @@ pub(super) fn answer() -> Option<u8> {
 /// The help of the command, and the whole reference.
 fn whole() -> Result<(), Failure> {
     if let Err(help) = Args::try_parse_from(["phicam", "help", "scene"]) {
-        help.print().map_err(|e| output::unwritten(&e))?;
+        output::printed(help.print())?;
     }
     output::print(&format!("\n{}", reference_text()))
 }

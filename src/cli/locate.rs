@@ -5,6 +5,7 @@ use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
 use super::load_run::read_run;
+use super::output;
 use super::process::pool;
 use super::run_folder::{LOCATED, RunFolder};
 use super::spelled::Spelled;
@@ -34,6 +35,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
         .output
         .clone()
         .unwrap_or_else(|| args.dir.join(LOCATED));
+    output::refuse_run(&output)?;
     let _lock = RunFolder::lock(&output, "phicam locate")?;
     let pool = pool(args.threads)?;
     let what = format!("locate in {}", scene.name);

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::Failure;
+use crate::folder::Record;
 use crate::store::{self, StoreError, write_whole};
 use crate::store::{harmless, harmless_json};
 
@@ -20,11 +21,15 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     draw(&harmless(text))
 }
 
-/// What a terminal or a shell is to obey, on standard output: a drawing, a script. A reader that
-/// has gone away (`| head`) is no error.
+/// What a terminal or a shell is to obey, on standard output: a drawing, a script.
 pub(super) fn draw(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// How printing ended: a reader that has gone away is no error.
+pub(super) fn printed(ended: io::Result<()>) -> Result<(), Failure> {
+    match ended {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(unwritten(&e)),
         _ => Ok(()),
     }
@@ -67,6 +72,16 @@ pub(super) fn refuse_taken(path: &Path, force: bool) -> Result<(), Failure> {
         return Ok(());
     }
     Err(StoreError::Taken { path }.into())
+}
+
+/// The folder of a run is none for other results: they have files of the same names.
+pub(super) fn refuse_run(path: &Path) -> Result<(), Failure> {
+    if !path.join(Record::FILE).exists() {
+        return Ok(());
+    }
+    let path = path.display();
+    let cause = format!("{path} is the folder of a run, with its own light, scene and report");
+    Err(Failure::new(cause, "choose another folder (-o)"))
 }
 
 /// Refuses a name that ends as that of another kind of picture or mesh than is written: programs go by it.

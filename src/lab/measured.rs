@@ -30,6 +30,26 @@ impl<'a> Measured<'a> {
     }
 }
 
+impl Measured<'_> {
+    /// Refuses entries with light of which nothing says how exact it is.
+    ///
+    /// # Errors
+    /// [`ValidationError::Exact`].
+    pub(super) fn check_errors(&self) -> Result<(), ValidationError> {
+        let out = self.beside.left_out;
+        let counts = |at: &usize| out.is_none_or(|flags| flags[*at] == 0.0);
+        let exact = |at: &usize| self.phi[*at] != 0.0 && self.stderr[*at] == 0.0;
+        let counted = || (0..self.phi.len()).filter(counts);
+        match counted().filter(exact).count() {
+            0 => Ok(()),
+            count => Err(ValidationError::Exact {
+                count,
+                entries: counted().count(),
+            }),
+        }
+    }
+}
+
 /// Why nothing can be validated.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum ValidationError {
@@ -50,6 +70,17 @@ pub enum ValidationError {
         found_rows: usize,
         /// Columns given.
         found_columns: usize,
+    },
+    /// Measured light has errors.
+    #[error(
+        "{count} of {entries} entries hold light and have a standard error of 0, which no measurement has: any model \
+         is infinitely far from them (leave them out (--left-out), or give their errors)"
+    )]
+    Exact {
+        /// Such entries.
+        count: usize,
+        /// All entries that count.
+        entries: usize,
     },
     /// What is beside the model does not fit it.
     #[error(transparent)]

@@ -79,6 +79,9 @@ pub fn validate(
         }
     }
     beside.check((rows, columns))?;
+    if test.known.paths.is_none() {
+        measured.check_errors()?;
+    }
     let Against {
         kernel,
         integration,

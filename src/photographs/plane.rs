@@ -50,6 +50,12 @@ pub fn linearised(
     let colours = [Channel::Red, Channel::Green, Channel::Blue];
     let grey = samples.is_grey();
     let wanted = match chosen {
+        Chosen::One(channel) if grey => {
+            return Err(refused(
+                format!("{name} is grey, and has no channel {channel:?}"),
+                "leave `channel` out",
+            ));
+        }
         _ if grey => vec![samples.channels[0]],
         Chosen::Grey => {
             return Err(refused(

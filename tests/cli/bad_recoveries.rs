@@ -79,6 +79,38 @@ fn no_noise_where_noise_is_asked_for() {
     }
 }
 
+/// What a render says of its standard errors is told where it stands beside them.
+#[test]
+fn errors_that_are_not_to_be_trusted_are_told() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    write(&workspace, "phi.stderr.npy", 6, 1e-14, (0, 0, 1e-14));
+    write(&workspace, "phi.tails.npy", 6, 0.0, (1, 2, 1.0));
+    let line = "recover bench --phi phi.npy --stderr phi.stderr.npy --elements 2 --method joint";
+    let words = "of 1 of 48 entries the standard error is not to be trusted, says phi.tails.npy";
+    let told = |more: &str| {
+        workspace
+            .phicam(&format!("{line} {more}"))
+            .stderr
+            .contains(words)
+    };
+    assert!(told(""));
+    assert!(!told("--left-out phi.tails.npy"));
+}
+
+/// `validate` refuses light whose standard error is 0, of which every model is infinitely far off.
+#[test]
+fn light_without_an_error_is_not_validated() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    write(&workspace, "errors.npy", 6, 1e-14, (1, 2, 0.0));
+    let line = "validate --phi phi.npy --stderr errors.npy --against bench/scene.toml";
+    workspace.refuses(
+        line,
+        &["1 of 48 entries", "standard error of 0", "--left-out"],
+    );
+}
+
 /// `joint-tv` has no other rule: none is offered.
 #[test]
 fn a_total_variation_without_noise() {

@@ -88,6 +88,13 @@ fn a_rendered_scene_is_as_it_is_written() {
 fn uncertainties_stand_in_the_scene() {
     let w = rendered();
     w.refuses("calibrate run", &["--free", "[uncertainty]"]);
+    for line in [
+        "calibrate run --free hinge.angle -o run",
+        "locate run -o run",
+        "study noise run/scene.toml -o run --replace",
+    ] {
+        w.refuses(line, &["the folder of a run", "choose another"]);
+    }
     w.refuses(
         "calibrate run --free hinge.angel",
         &["hinge.angel", "hinge.angle"],

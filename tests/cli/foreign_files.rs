@@ -59,7 +59,11 @@ fn broken_meshes() {
     nan.push(3);
     nan.extend([0_i32, 1, 2].iter().flat_map(|x| x.to_le_bytes()));
     w.write("nan.ply", nan);
-    refused(&w, &with_mesh("nan.ply"), &["none of the", "no finite number"]);
+    refused(
+        &w,
+        &with_mesh("nan.ply"),
+        &["none of the", "no finite number"],
+    );
     w.write("odd.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 9\n");
     refused(&w, &with_mesh("odd.obj"), &["odd.obj", "9"]);
     w.write("text.ply", "this is no mesh");

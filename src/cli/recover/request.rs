@@ -6,6 +6,7 @@ use super::is_own;
 use crate::cli::args::RecoverArgs;
 use crate::cli::beside::{
     Beside, PhotographSize, left_out, mask, refuse_clipped, relative_errors, warn_of_exact,
+    warn_of_untrusted,
 };
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
@@ -53,6 +54,9 @@ impl RecoveryRequest<'_> {
             Errors::File(file) => {
                 let stderr = read_stderr(&file, left_out.as_ref(), scene)?;
                 warn_of_exact((&phi, &stderr), left_out.as_ref(), self.console);
+                if left_out.is_none() {
+                    warn_of_untrusted(&file, &of, self.console)?;
+                }
                 Some(stderr)
             }
             Errors::Unknown => {

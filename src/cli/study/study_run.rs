@@ -10,8 +10,9 @@ use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::findings::deliver;
 use crate::cli::interrupt::{SignalGuard, control};
+use crate::cli::output;
 use crate::cli::process::{pool, process, version};
-use crate::cli::run_folder::RunFolder;
+use crate::cli::run_folder::{REPORT, RunFolder};
 use crate::cli::tasks::{Tasks, compute, identity};
 use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
 use crate::lab::{AnyStudy, Sharing, Work};
@@ -54,6 +55,10 @@ impl StudyRun {
         let (all, identity) = (0..self.study.tasks() as u64, self.identity());
         let file = format!("{}.{EXTENSION}", self.name);
         let path = self.output.join(&file);
+        output::refuse_run(&self.output)?;
+        if !self.replace {
+            refuse_page(&self.output, self.name)?;
+        }
         let lock = RunFolder::lock(&self.output, &format!("phicam study {}", self.name))?;
         if !self.replace {
             refuse_other(&path, &identity, all.end, console)?;
@@ -105,6 +110,18 @@ impl StudyRun {
         let words = [study].into_iter().chain(self.invocation.options.clone());
         identity(Some(&self.invocation.scene), words, self.study.tasks())
     }
+}
+
+/// Refuses to replace the page of another study.
+fn refuse_page(folder: &Path, name: &str) -> Result<(), Failure> {
+    let is_there = |file: &str| folder.join(file).exists();
+    if !is_there(REPORT) || is_there(&format!("{name}.json")) {
+        return Ok(());
+    }
+    Err(Failure::new(
+        format!("{} is of another study", folder.join(REPORT).display()),
+        "choose another folder (-o), or replace it (--replace)",
+    ))
 }
 
 /// Refuses to replace outputs that were computed with other settings, or cannot be read for now.

@@ -23,6 +23,8 @@ const LENGTHS: [f64; 4] = [0.0, 1.5, 6.0, 24.0];
 const HALF: f64 = 0.5;
 /// Decades about the first guess in which a free scale is looked for.
 const DECADES: f64 = 3.0;
+/// Largest eigenvalue beside which 1 is not lost in a decomposition.
+const RESOLVED: f64 = 1e13;
 
 /// A prior of pictures.
 #[derive(Clone, Debug)]
@@ -153,7 +155,9 @@ impl Prior {
         let grey = of.h.sum() * HALF * HALF;
         let guess = (of.square / grey.max(f64::MIN_POSITIVE)).sqrt();
         let reach = libm::pow(10.0, DECADES);
-        let (scale, log) = largest(guess / reach, guess * reach, log);
+        // Beyond it 1 + s²μ loses the 1.
+        let most = (RESOLVED / found.sigma[0].max(f64::MIN_POSITIVE)).sqrt();
+        let (scale, log) = largest(guess / reach, (guess * reach).min(most.max(guess)), log);
         Ok((log, scale))
     }
 }
