@@ -84,7 +84,8 @@ pub(super) fn refuse_run(path: &Path) -> Result<(), Failure> {
     Err(Failure::new(cause, "choose another folder (-o)"))
 }
 
-/// Refuses a name that ends as that of another kind of picture or mesh than is written: programs go by it.
+/// Refuses a name that ends as that of another kind of picture or mesh than is written: programs go
+/// by it.
 pub(super) fn refuse_other_kind(path: &Path, kind: &str) -> Result<(), Failure> {
     let extension = path.extension().and_then(|e| e.to_str());
     let extension = extension.unwrap_or_default().to_ascii_lowercase();

@@ -16,8 +16,8 @@ const FEWEST: usize = 16;
 /// A constant up to this share of the largest σ² is no law of the light.
 const CONSTANT: f64 = 1e-3;
 
-/// a, b and c of σ² = a + b x + c x², W², W and 1: noise that all entries have alike, that of counts
-/// of b each, and a share of each.
+/// a, b and c of σ² = a + b x + c x², W², W and 1: noise that is the same in all entries, that of
+/// counts of b each, and a share of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightLaw(pub [f64; 3]);
 

@@ -46,6 +46,9 @@ pub struct Score {
     pub shadows_stay: bool,
 }
 
+/// What is not tested of measured light: the picture is taken as the scene has it.
+pub(super) const SINGLE_ELEMENTS: &str = "the reflectance of single elements";
+
 impl Score {
     /// Whether a parameter is beyond its limit.
     pub fn rejects(&self) -> bool {

@@ -10,7 +10,7 @@ use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::grounds::{Basis, Grounds};
 use super::measured::{Measured, ValidationError};
-use super::score::Derivatives;
+use super::score::{Derivatives, SINGLE_ELEMENTS};
 use super::unmodelled::unmodelled;
 
 named! {
@@ -127,6 +127,11 @@ pub fn validate(
     agreement.unmodelled.splice(0..0, unmodelled(scene));
     if let Some(score) = &mut agreement.score {
         score.shadows_stay = off.are_shadows_still();
+        // A render has the scene's own picture; of measured light nobody knows it.
+        let mut hidden = scene.hidden();
+        if test.known.paths.is_none() && hidden.any(|(_, s)| s.elements != [1, 1]) {
+            score.untested.push(SINGLE_ELEMENTS.to_owned());
+        }
     }
     if occlusion == Occlusion::Ignored && is_obstructed(scene) {
         let told = "what stands in the way (`--no-occlusion` leaves it out)";

@@ -7,7 +7,7 @@ use super::certainty::fits_better;
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
 use super::gains::words;
 use super::grounds::FEWEST;
-use super::score::{Deviation, Score};
+use super::score::{Deviation, SINGLE_ELEMENTS, Score};
 use super::summary::{facts, percent};
 use crate::num::digits::{figure, significant};
 
@@ -182,7 +182,14 @@ impl Agreement {
     /// The most likely cause that `score` finds.
     pub(super) fn cause(&self, score: &Score) -> String {
         let level = share(self.significance, true);
-        score.cause(self.chi2_per_dof, self.dof, level)
+        let cause = score.cause(self.chi2_per_dof, self.dof, level);
+        match score.untested.iter().any(|name| name == SINGLE_ELEMENTS) {
+            true => format!(
+                "{cause}. A picture that is not as the scene says, element by element, looks like such a cause too: \
+                 `phicam recover` and `phicam calibrate` take it for unknown"
+            ),
+            false => cause,
+        }
     }
 
     /// What was fitted before the test, and is not seen by it.

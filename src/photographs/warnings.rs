@@ -253,7 +253,7 @@ mod tests {
     use super::*;
     use crate::photographs::mapping::Mark;
 
-    /// Marks of a perspective, one of twelve of which is read 30 or 1000 px beside its place: it is
+    /// Marks of a perspective, one of twelve of which is read 30 or 150 px beside its place: it is
     /// named, though the mapping is drawn to it. With all where they are nothing is said, and where
     /// two are off none is blamed.
     #[test]
@@ -278,7 +278,7 @@ mod tests {
         };
         assert_eq!(told(0.0, &[6]), None);
         for k in 0..12 {
-            for off in [30.0, 1000.0] {
+            for off in [30.0, 150.0] {
                 let words = told(off, &[k]).unwrap();
                 let name = format!("without the {}. of the list, {off:.0}", k + 1);
                 assert!(words.contains(&name), "{words}");

@@ -26,7 +26,8 @@ impl Order {
         (self.p <= SIGNIFICANCE).then_some(false)
     }
 
-    fn sentence(&self) -> String {
+    /// `is_explained`: whether nothing is left over beside the stated noise.
+    fn sentence(&self, is_explained: bool) -> String {
         let Self {
             tried,
             as_likely,
@@ -35,7 +36,10 @@ impl Order {
             least_misfit,
         } = *self;
         let told = match self.is_by_chance() {
-            Some(false) => "The photographs belong to their spots",
+            Some(false) if is_explained => "The photographs belong to their spots",
+            Some(false) => {
+                "As a whole the photographs belong to their spots; whether each single one does is not told"
+            }
             Some(true) => {
                 "Nothing says that the photographs belong to their spots: the order is wrong, or the \
                  hidden surface is nowhere near, or the noise hides it"
@@ -47,7 +51,8 @@ impl Order {
         format!(
             "{told}. Of {tried} random orders {as_likely} are as likely as the stated one (p = {}); \
              misfit {} as stated, at least {} in the others. Frames up to 8 places too early or too \
-             late, or backwards, and photographs mirrored or turned were tried too.",
+             late, all or from one on, two exchanged, or backwards, and photographs mirrored or turned \
+             were tried too.",
             figure(p, 2),
             figure(misfit, 3),
             figure(least_misfit, 3)
@@ -63,13 +68,22 @@ impl Located {
         self.size.is_some() && by_chance != Some(true) && self.mistaken.is_none()
     }
 
+    /// Whether the likeliest reflectances leave no more than the stated noise.
+    fn is_explained(&self) -> bool {
+        self.is_noise_known && self.noise <= MUCH
+    }
+
     /// Whether the photographs belong to their spots.
     fn ordered(&self) -> String {
         match (&self.mistaken, self.order) {
             (_, None) => "Whether the photographs belong to their spots was not asked.".to_owned(),
-            (None, Some(order)) => order.sentence(),
+            (None, Some(order)) => order.sentence(self.is_explained()),
             (Some(other), Some(order)) if order.is_by_chance() == Some(true) => {
-                format!("{} They fit better if {}.", order.sentence(), other.what)
+                format!(
+                    "{} They fit better if {}.",
+                    order.sentence(false),
+                    other.what
+                )
             }
             (Some(other), Some(_)) => format!(
                 "The photographs are NOT IN ORDER: {}. Turned back they are likelier by e^{}, and \
@@ -131,7 +145,7 @@ impl Located {
             let left = figure(self.noise, 3);
             noise = format!("What the likeliest reflectances leave is {left} of the stated noise.");
         }
-        if self.is_noise_known && self.noise > MUCH {
+        if self.is_noise_known && !self.is_explained() {
             noise += " That is more than noise: the elements may be too coarse (--elements), or the \
                       model lacks something, and the place be wrong by more than its error.";
         }

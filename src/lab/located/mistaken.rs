@@ -1,10 +1,11 @@
 //! Whether photographs are in an order that is easily mistaken for the right one.
 //!
 //! Against random orders one that is off by a single frame looks right: neighbouring spots light
-//! much the same. So frames that follow each other by a few places too early or too late, or
-//! backwards, and photographs that are mirrored or turned are tried too, at the stated place; with
-//! the likeliest of them the search is made again.
+//! much the same. So frames that follow each other by a few places too early or too late, all or
+//! from one on, two frames exchanged, all backwards, and photographs that are mirrored or turned are
+//! tried too, at the stated place; with the likeliest of them the search is made again.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::frames::{Side, TermsOf};
@@ -15,6 +16,9 @@ use crate::num::linalg::LinalgError;
 
 /// Frames too early or too late that are tried.
 const MOST_SHIFT: usize = 8;
+/// Pairs of frames up to which all exchanges are tried; of more those up to `MOST_SHIFT` places
+/// apart.
+const MOST_PAIRS: usize = 1000;
 /// An order is likelier if the photographs are by e to this, and it leaves at most this part of
 /// what the stated one leaves: what a model lacks is no independent noise, which the first takes it
 /// for.
@@ -75,6 +79,28 @@ impl Rearranged {
                 };
                 let what = format!("the frames stand backwards{place}");
                 all.push((what, late(k, &backwards), own.clone()));
+            }
+        }
+        for from in 1..frames - 1 {
+            // One was not taken, or one was taken twice: those behind it stand beside their places.
+            for (places, way) in [(1, "late"), (frames - from - 1, "early")] {
+                let tail = frames - from;
+                let moved = |l: usize| from + (l - from + places) % tail;
+                let order = (0..frames).map(|l| if l < from { l } else { moved(l) });
+                let what = format!("from photograph {from} on each stands 1 too {way}");
+                all.push((what, order.collect(), own.clone()));
+            }
+        }
+        let apart = match frames * (frames - 1) / 2 <= MOST_PAIRS {
+            true => frames - 1,
+            false => MOST_SHIFT,
+        };
+        for a in 0..frames {
+            for b in a + 1..frames.min(a + apart + 1) {
+                let mut order: Vec<usize> = (0..frames).collect();
+                order.swap(a, b);
+                let what = format!("photographs {a} and {b} are exchanged");
+                all.push((what, order, own.clone()));
             }
         }
         let at = |of: &dyn Fn(usize, usize) -> [usize; 2]| -> Vec<usize> {
@@ -141,16 +167,19 @@ pub(super) fn likeliest(
         Ok(found.map_or(f64::NEG_INFINITY, |fit| fit.log_likelihood))
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
-    let mut best = (fit(sides, &stated)?, None);
-    for order in all {
+    let found = all.par_iter().map(|order| {
         // Frames are what they are in any order; pixels see other light in other places.
-        let found = if order.frames == stated {
+        if order.frames == stated {
             let own = order.of(of);
             let sides = Side::all(&own.unexplained(), terms.camera)?;
-            fit(&sides, &stated)?
+            fit(&sides, &stated)
         } else {
-            fit(sides, &order.frames)?
-        };
+            fit(sides, &order.frames)
+        }
+    });
+    let found: Vec<f64> = found.collect::<Result<_, _>>()?;
+    let mut best = (fit(sides, &stated)?, None);
+    for (found, order) in found.into_iter().zip(all) {
         if found > best.0 {
             best = (found, Some(order));
         }
