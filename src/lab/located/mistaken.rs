@@ -2,8 +2,8 @@
 //!
 //! Against random orders one that is off by a single frame looks right: neighbouring spots light
 //! much the same. So frames that follow each other by a few places too early or too late, all or
-//! from one on, two frames exchanged, all backwards, and photographs that are mirrored or turned are
-//! tried too, at the stated place; with the likeliest of them the search is made again.
+//! from one on, two frames exchanged, all backwards, and photographs that are mirrored or turned
+//! are tried too, at the stated place; with the likeliest of them the search is made again.
 
 use rayon::prelude::*;
 use serde::Serialize;
