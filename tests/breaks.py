@@ -2266,6 +2266,24 @@ BREAKS = [
         "bad_recoveries::errors_that_are_not_to_be_trusted_are_told",
         20,
     ),
+    Break(
+        "A flicker that all pixels of a photograph share is told",
+        "src/photographs/flicker.rs",
+        "self.excess += freedom * (whole - due);",
+        "self.excess += 0.5 * freedom * (whole - due);",
+        "lib",
+        "photographs::flicker::tests::a_flicker_is_found_and_none_is_made_up",
+        20,
+    ),
+    Break(
+        "Two photographs that are exchanged are told",
+        "src/lab/located/mistaken.rs",
+        "order.swap(a, b);",
+        "order.swap(a, a);",
+        "lib",
+        "lab::located::tests::an_order_that_is_easily_mistaken_is_told",
+        20,
+    ),
 ]
 
 

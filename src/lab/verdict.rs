@@ -183,13 +183,13 @@ impl Agreement {
     pub(super) fn cause(&self, score: &Score) -> String {
         let level = share(self.significance, true);
         let cause = score.cause(self.chi2_per_dof, self.dof, level);
-        match score.untested.iter().any(|name| name == SINGLE_ELEMENTS) {
-            true => format!(
-                "{cause}. A picture that is not as the scene says, element by element, looks like such a cause too: \
-                 `phicam recover` and `phicam calibrate` take it for unknown"
-            ),
-            false => cause,
+        if score.untested.iter().all(|name| name != SINGLE_ELEMENTS) {
+            return cause;
         }
+        format!(
+            "{cause}. A picture that is not as the scene says, element by element, looks like such a cause too: \
+             `phicam recover` and `phicam calibrate` take it for unknown"
+        )
     }
 
     /// What was fitted before the test, and is not seen by it.

@@ -58,9 +58,10 @@ pub fn figure(x: f64, digits: usize) -> String {
 
 /// Degrees of freedom: five digits, a whole number as one.
 pub fn freedom(x: f64) -> String {
-    match x.fract() == 0.0 {
-        true => x.to_string(),
-        false => significant(x, 5),
+    if x.fract() == 0.0 {
+        x.to_string()
+    } else {
+        significant(x, 5)
     }
 }
 

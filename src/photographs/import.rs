@@ -5,6 +5,7 @@ use std::path::Path;
 use super::account::{ImportAccount, Imported};
 use super::columns::Columns;
 use super::error::{PhotographError, refused};
+use super::flicker::Flicker;
 use super::left_out::LeftOut;
 use super::list::{place, positions, tables};
 use super::noise::{contradicted, photon_transfer};
@@ -14,8 +15,8 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, copied, little_left, mirrored, misread, misstated, no_light, outside,
-    roughly, rounded, shared, stretched, unsaid,
+    bent, by_own_light, copied, flickers, little_left, mirrored, misread, misstated, no_light,
+    outside, roughly, rounded, shared, stretched, unsaid,
 };
 use crate::scene::{Scene, SceneError};
 
@@ -100,10 +101,10 @@ pub fn import(
     let placing = Placing::new(set, &scene.camera, shots.size)?;
     let unit = unit(set.watts, &shots.takes)?;
     let given = set.camera_noise()?;
-    let repeated = if given.is_none() || shots.has_repeats(&mut reader)? {
+    let (repeated, flicker) = if given.is_none() || shots.has_repeats(&mut reader)? {
         shots.repeated(&mut reader)?
     } else {
-        Vec::new()
+        (Vec::new(), Flicker::default())
     };
     let contradicted = given.and_then(|noise| contradicted(&repeated, noise));
     let line = if given.is_some() || repeated.is_empty() {
@@ -132,6 +133,7 @@ pub fn import(
     warnings.extend(shared(placing.footprints.shared()));
     warnings.extend(line.and_then(|line| bent(&line, shots.differ())));
     warnings.extend(contradicted.map(misstated));
+    warnings.extend(flicker.found().map(flickers));
     if noise.is_some_and(|n| n.has_offset) {
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
     }

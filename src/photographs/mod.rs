@@ -24,6 +24,7 @@ mod account;
 mod columns;
 mod correct;
 mod error;
+mod flicker;
 mod footprints;
 mod highest;
 mod import;

@@ -129,12 +129,19 @@ pub struct Averaged {
     /// The largest stored integer below saturation.
     pub highest: Highest,
     squares: Vec<f64>,
+    /// Pixels that make up a whole: those that the first photograph has not saturated.
+    in_whole: Vec<bool>,
+    /// Mean and squares of the light of wholes.
+    whole: [f64; 2],
 }
 
 impl Averaged {
     /// The first photograph.
     pub fn of(first: Plane) -> Self {
+        let in_whole: Vec<bool> = first.saturated.iter().map(|is| !is).collect();
         Self {
+            whole: [whole(&first.light, &in_whole), 0.0],
+            in_whole,
             size: first.size,
             frames: 1,
             squares: vec![0.0; first.light.len()],
@@ -157,6 +164,10 @@ impl Averaged {
         self.zeros += next.zeros;
         self.highest = self.highest.with(next.highest);
         let n = self.frames as f64;
+        let light = whole(&next.light, &self.in_whole);
+        let off = light - self.whole[0];
+        self.whole[0] += off / n;
+        self.whole[1] += off * (light - self.whole[0]);
         self.share += (next.share - self.share) / n;
         for k in 0..self.light.len() {
             let off = next.light[k] - self.light[k];
@@ -173,10 +184,28 @@ impl Averaged {
         self.zeros as f64 * self.share
     }
 
+    /// Sample variance of the light of whole photographs, and that by the scatter of each pixel
+    /// alone, counts²; `None` without repeats.
+    pub(super) fn of_wholes(&self) -> Option<[f64; 2]> {
+        let pixels = whole(&self.squares, &self.in_whole);
+        (self.frames > 1).then(|| [self.whole[1], pixels].map(|x| x / (self.frames - 1) as f64))
+    }
+
+    /// Mean light of a whole above dark frames, counts.
+    pub(super) fn light_above(&self, below: Option<&Self>) -> f64 {
+        self.whole[0] - below.map_or(0.0, |dark| whole(&dark.light, &self.in_whole))
+    }
+
     /// Sample variance of one photograph at a pixel, counts²; `None` without repeats.
     pub fn scatter(&self, pixel: usize) -> Option<f64> {
         (self.frames > 1).then(|| self.squares[pixel] / (self.frames - 1) as f64)
     }
+}
+
+/// Σ over the pixels of a whole.
+fn whole(values: &[f64], pixels: &[bool]) -> f64 {
+    let counted = values.iter().zip(pixels).filter(|(_, is_in)| **is_in);
+    counted.map(|(x, _)| x).sum()
 }
 
 /// Refuses a photograph of another size than the first.

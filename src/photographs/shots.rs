@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::error::{PhotographError, refused};
+use super::flicker::Flicker;
 use super::noise::Repeated;
 use super::pattern::expanded;
 use super::plane::{Averaged, Chosen, Plane, linearised, same_full_scale, same_size};
@@ -258,18 +259,19 @@ impl<'a> Shots<'a> {
         }
     }
 
-    /// The repeats of the pixels of one channel, from all repeated photographs; none where none
-    /// are.
+    /// The repeats of the pixels of one channel, from all repeated photographs, none where none are;
+    /// and by what these differ as wholes.
     pub(super) fn repeated(
         &self,
         reader: &mut Reader<'_>,
-    ) -> Result<Vec<Repeated>, PhotographError> {
+    ) -> Result<(Vec<Repeated>, Flicker), PhotographError> {
         let spots = self.spots;
         let pixels = self.size[0] * self.size[1];
         let stride = (spots * pixels).div_ceil(MOST_REPEATED);
-        let mut repeated = Vec::new();
+        let (mut repeated, mut flicker) = (Vec::new(), Flicker::default());
         let visit = |spot: usize, _: &Take, mean: Averaged| {
             let below = self.shortest_dark();
+            flicker.add(&mean, below);
             let light = |k: usize| mean.light[k] - below.map_or(0.0, |d| d.light[k]);
             for k in (0..pixels).skip(spot % stride).step_by(stride) {
                 let good = !mean.saturated[k] && !self.dead[k];
@@ -287,7 +289,7 @@ impl<'a> Shots<'a> {
             Ok(())
         };
         self.each_spot(reader, visit)?;
-        Ok(repeated)
+        Ok((repeated, flicker))
     }
 
     /// The same of the dark frames of the shortest exposure time: of no light.

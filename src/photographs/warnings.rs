@@ -218,6 +218,18 @@ pub(super) fn stretched([columns, rows]: [f64; 2], [u, v]: [f64; 2]) -> Option<S
     })
 }
 
+/// That photographs of one spot differ as wholes: one of them by `own`, their means by `of_mean`.
+pub(super) fn flickers([own, of_mean]: [f64; 2]) -> String {
+    format!(
+        "photographs of one spot differ as wholes by {} % more than the noise of their pixels (the laser flickers, or \
+         the dark level drifts): their mean has an error of {} % that all its pixels share, and no standard error \
+         holds it; give recover, validate and calibrate --frame-gain {}",
+        figure(100.0 * own, 2),
+        figure(100.0 * of_mean, 2),
+        significant(of_mean, 2)
+    )
+}
+
 /// That repeats scatter by `ratio` times the variance that is stated.
 pub(super) fn misstated(ratio: f64) -> String {
     let (times, which) = if ratio > 1.0 {
@@ -287,7 +299,7 @@ mod tests {
         let words = told(30.0, &[2, 7]).unwrap();
         assert!(words.contains("no single one"), "{words}");
         assert_eq!(outside(&marks(0.0, &[]), [400, 901]), None);
-        let words = outside(&marks(0.0, &[]), [400, 850]).unwrap();
+        let words = outside(&marks(0.0, &[]), [400, 800]).unwrap();
         assert!(words.contains("the 1. of the marks"), "{words}");
     }
 

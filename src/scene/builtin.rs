@@ -61,9 +61,12 @@ pub(super) fn read(path: &str) -> Result<String, SceneError> {
     let known = names.clone().collect::<Vec<_>>().join(", ");
     let cure = || format!("give the path of a TOML scene file, or a built-in scene: {known}");
     let bytes = store::read(Path::new(path), LARGEST_FILE).map_err(|e| {
-        let cure = meant(path, e.is_missing()).unwrap_or_else(|| match e.is_denied() {
-            true => "allow to read it".to_owned(),
-            false => cure(),
+        let cure = meant(path, e.is_missing()).unwrap_or_else(|| {
+            if e.is_denied() {
+                "allow to read it".to_owned()
+            } else {
+                cure()
+            }
         });
         error(format!("cannot read this scene: {}", e.fault), cure)
     })?;

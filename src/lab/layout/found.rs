@@ -166,14 +166,14 @@ impl Layouts {
             let [spots, candidates] = [row.spots, self.optimum.candidates.len()];
             let [risk, bound] = [risk(row), figure(self.optimum.bound, 3)];
             // Between the candidates the bound does not hold.
-            match row.risk < self.optimum.bound {
-                false => format!(
-                    "{spots} spots where they say most leave {risk}, and no layout of {candidates} candidates leaves less than {bound}"
-                ),
-                true => format!(
+            if row.risk < self.optimum.bound {
+                return format!(
                     "{spots} spots between {candidates} candidates leave {risk}, less than the {bound} that bounds all layouts of these: how good any layout can be is told by more --candidates"
-                ),
+                );
             }
+            format!(
+                "{spots} spots where they say most leave {risk}, and no layout of {candidates} candidates leaves less than {bound}"
+            )
         });
         let said: Vec<String> = own.into_iter().chain(best).collect();
         format!("On {} {}.", self.scene, said.join("; "))

@@ -87,13 +87,14 @@ impl Rearranged {
                 let tail = frames - from;
                 let moved = |l: usize| from + (l - from + places) % tail;
                 let order = (0..frames).map(|l| if l < from { l } else { moved(l) });
-                let what = format!("from photograph {from} on each stands 1 too {way}");
+                let what = format!("from about photograph {from} on each stands 1 too {way}");
                 all.push((what, order.collect(), own.clone()));
             }
         }
-        let apart = match frames * (frames - 1) / 2 <= MOST_PAIRS {
-            true => frames - 1,
-            false => MOST_SHIFT,
+        let apart = if frames * (frames - 1) / 2 <= MOST_PAIRS {
+            frames - 1
+        } else {
+            MOST_SHIFT
         };
         for a in 0..frames {
             for b in a + 1..frames.min(a + apart + 1) {

@@ -332,10 +332,11 @@ fn an_order_that_is_easily_mistaken_is_told() {
         // Of one photograph in the place of its neighbour 20 % of noise tell nothing.
         if noise < 0.1 {
             let missed = frames(&|l| if l < 5 { l } else { n.min(l + 2) - 1 });
-            assert_eq!(
-                missed.unwrap(),
-                "from photograph 5 on each stands 1 too early"
-            );
+            // Of the one that was not taken there is none, so that neighbours of 5 are as likely.
+            let near =
+                (2..9).map(|k| format!("from about photograph {k} on each stands 1 too early"));
+            let missed = missed.unwrap();
+            assert!(near.into_iter().any(|words| words == missed), "{missed}");
             let exchanged = frames(&|l| [4, 3].get(l.wrapping_sub(3)).map_or(l, |k| *k));
             assert_eq!(exchanged.unwrap(), "photographs 3 and 4 are exchanged");
         }
