@@ -259,8 +259,8 @@ impl<'a> Shots<'a> {
         }
     }
 
-    /// The repeats of the pixels of one channel, from all repeated photographs, none where none are;
-    /// and by what these differ as wholes.
+    /// The repeats of the pixels of one channel, from all repeated photographs, none where none
+    /// are; and by what these differ as wholes.
     pub(super) fn repeated(
         &self,
         reader: &mut Reader<'_>,
