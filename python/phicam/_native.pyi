@@ -125,6 +125,7 @@ def validate(
     considered: bool,
     significance: float,
     replicates: int | None,
+    paths: int | None,
     errors_name: str,
     beside: Any,
     threads: int | None,

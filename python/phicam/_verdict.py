@@ -132,11 +132,12 @@ def validate(
         absorbed = background and not phi.is_rendered
         errors = errors or (phi.errors if own and not absorbed else "independent")  # type: ignore[assignment]
         replicates = phi.replicates if own and replicates is None else replicates
+        paths = phi.settings.get("samples") if own and phi.is_rendered else None
         frame_gain = phi.frame_gain if own and frame_gain is None else frame_gain
     elif model is None:
         raise InputError("nothing says of which scene the array is\n  cure: give model=, a Scene or a Model")
     else:
-        scene, flux = None, matrix(phi, "phi")
+        scene, flux, paths = None, matrix(phi, "phi"), None
     if model is not None and not isinstance(model, Model):
         scene_at(model)
     if isinstance(model, Model):
@@ -181,6 +182,7 @@ def validate(
         considered=occlusion is None or bool(occlusion),
         significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+        paths=paths,
         errors_name=errors or "independent",
         beside=others,
         threads=threads_of(threads),

@@ -38,7 +38,7 @@ type Verdict<'py> = (
 /// The verdict on Φcam.
 #[pyfunction]
 #[pyo3(signature = (scene, phi, stderr, *, kernel_name, integration_name, considered,
-                    significance, replicates, errors_name, beside, threads))]
+                    significance, replicates, paths, errors_name, beside, threads))]
 #[expect(
     clippy::too_many_arguments,
     reason = "one for each keyword of Python's function"
@@ -53,6 +53,7 @@ pub fn validate<'py>(
     considered: bool,
     significance: f64,
     replicates: Option<u32>,
+    paths: Option<u64>,
     errors_name: &str,
     beside: Given<'py>,
     threads: Option<usize>,
@@ -64,7 +65,10 @@ pub fn validate<'py>(
     };
     let test = Test {
         significance,
-        known: Certainty::new(errors(errors_name)?, replicates),
+        known: Certainty {
+            paths,
+            ..Certainty::new(errors(errors_name)?, replicates)
+        },
     };
     knows_its_light(&scene.inner)?;
     fits(py, &scene.inner, need::verdict)?;
