@@ -55,12 +55,10 @@ impl StudyRun {
         let (all, identity) = (0..self.study.tasks() as u64, self.identity());
         let file = format!("{}.{EXTENSION}", self.name);
         let path = self.output.join(&file);
+        let lock = RunFolder::lock(&self.output, &format!("phicam study {}", self.name))?;
         output::refuse_run(&self.output)?;
         if !self.replace {
             refuse_page(&self.output, self.name)?;
-        }
-        let lock = RunFolder::lock(&self.output, &format!("phicam study {}", self.name))?;
-        if !self.replace {
             refuse_other(&path, &identity, all.end, console)?;
         }
         let scene = &self.invocation.scene;

@@ -5,6 +5,8 @@
 //! from one on, two frames exchanged, all backwards, and photographs that are mirrored or turned
 //! are tried too, at the stated place; with the likeliest of them the search is made again.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -24,6 +26,9 @@ const MOST_PAIRS: usize = 1000;
 /// for.
 const TELLS: f64 = 5.0;
 const LESS: f64 = 0.9;
+/// Part of what the stated order leaves at its place, below which one that differs in a few
+/// photographs is worth a search.
+const WORTH: f64 = 0.97;
 
 /// An order in which the photographs are likelier than in the stated one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,7 +47,9 @@ pub(super) struct Rearranged {
     pub(super) what: String,
     /// The frame that is taken for each spot, and the pixel for each pixel.
     frames: Vec<usize>,
-    pixels: Vec<usize>,
+    pixels: Arc<[usize]>,
+    /// Whether most frames follow each other as stated.
+    is_of_few: bool,
 }
 
 impl Rearranged {
@@ -81,29 +88,6 @@ impl Rearranged {
                 all.push((what, late(k, &backwards), own.clone()));
             }
         }
-        for from in 1..frames - 1 {
-            // One was not taken, or one was taken twice: those behind it stand beside their places.
-            for (places, way) in [(1, "late"), (frames - from - 1, "early")] {
-                let tail = frames - from;
-                let moved = |l: usize| from + (l - from + places) % tail;
-                let order = (0..frames).map(|l| if l < from { l } else { moved(l) });
-                let what = format!("from about photograph {from} on each stands 1 too {way}");
-                all.push((what, order.collect(), own.clone()));
-            }
-        }
-        let apart = if frames * (frames - 1) / 2 <= MOST_PAIRS {
-            frames - 1
-        } else {
-            MOST_SHIFT
-        };
-        for a in 0..frames {
-            for b in a + 1..frames.min(a + apart + 1) {
-                let mut order: Vec<usize> = (0..frames).collect();
-                order.swap(a, b);
-                let what = format!("photographs {a} and {b} are exchanged");
-                all.push((what, order, own.clone()));
-            }
-        }
         let at = |of: &dyn Fn(usize, usize) -> [usize; 2]| -> Vec<usize> {
             let each = (0..pixels).map(|p| of(p % columns, p / columns));
             each.map(|[u, v]| u + v * columns).collect()
@@ -129,13 +113,49 @@ impl Rearranged {
             let what = "columns and rows of the photographs are exchanged".to_owned();
             all.push((what, stated, at(&|u, v| [v, u])));
         }
-        all.into_iter()
-            .map(|(what, frames, pixels)| Self {
+        let whole = all.into_iter().map(|(what, frames, pixels)| Self {
+            what,
+            frames,
+            pixels: pixels.into(),
+            is_of_few: false,
+        });
+        whole.chain(Self::of_few(frames, &own.into())).collect()
+    }
+
+    /// Those in which one frame was missed or taken twice, and those behind it stand beside their
+    /// places, or two are exchanged.
+    fn of_few(frames: usize, pixels: &Arc<[usize]>) -> Vec<Self> {
+        let mut all = Vec::new();
+        let mut push = |what: String, frames: Vec<usize>| {
+            all.push(Self {
                 what,
                 frames,
-                pixels,
-            })
-            .collect()
+                pixels: Arc::clone(pixels),
+                is_of_few: true,
+            });
+        };
+        for from in 1..frames - 1 {
+            let tail = frames - from;
+            for (places, way) in [(1, "late"), (tail - 1, "early")] {
+                let moved = |l: usize| from + (l - from + places) % tail;
+                let order = (0..frames).map(|l| if l < from { l } else { moved(l) });
+                let what = format!("from about photograph {from} on each stands 1 too {way}");
+                push(what, order.collect());
+            }
+        }
+        let apart = if frames * (frames - 1) / 2 <= MOST_PAIRS {
+            frames - 1
+        } else {
+            MOST_SHIFT
+        };
+        for a in 0..frames {
+            for b in a + 1..frames.min(a + apart + 1) {
+                let mut order: Vec<usize> = (0..frames).collect();
+                order.swap(a, b);
+                push(format!("photographs {a} and {b} are exchanged"), order);
+            }
+        }
+        all
     }
 
     /// The photographs in this order.
@@ -162,10 +182,12 @@ pub(super) fn likeliest(
     root: &Matrix,
     all: Vec<Rearranged>,
 ) -> Result<Option<Rearranged>, LinalgError> {
-    let fit = |sides: &[Side], frames: &[usize]| -> Result<f64, LinalgError> {
+    // ln p and the misfit.
+    let fit = |sides: &[Side], frames: &[usize]| -> Result<[f64; 2], LinalgError> {
         let lit = frames.iter().map(|l| &sides[*l]).zip(0..);
         let found = Fit::of_sides(lit, terms, root)?;
-        Ok(found.map_or(f64::NEG_INFINITY, |fit| fit.log_likelihood))
+        let dark = [f64::NEG_INFINITY, f64::INFINITY];
+        Ok(found.map_or(dark, |fit| [fit.log_likelihood, fit.misfit]))
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
     let found = all.par_iter().map(|order| {
@@ -178,10 +200,12 @@ pub(super) fn likeliest(
             fit(sides, &order.frames)
         }
     });
-    let found: Vec<f64> = found.collect::<Result<_, _>>()?;
-    let mut best = (fit(sides, &stated)?, None);
-    for (found, order) in found.into_iter().zip(all) {
-        if found > best.0 {
+    let found: Vec<[f64; 2]> = found.collect::<Result<_, _>>()?;
+    let [own, left] = fit(sides, &stated)?;
+    let mut best = (own, None);
+    for ([found, misfit], order) in found.into_iter().zip(all) {
+        // Of photographs that a model does not explain some exchange is always a little likelier.
+        if found > best.0 && (!order.is_of_few || misfit < WORTH * left) {
             best = (found, Some(order));
         }
     }
