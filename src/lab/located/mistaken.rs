@@ -26,9 +26,9 @@ const MOST_PAIRS: usize = 1000;
 /// for.
 const TELLS: f64 = 5.0;
 const LESS: f64 = 0.9;
-/// Part of what the stated order leaves at its place, below which one that differs in a few
-/// photographs is worth a search.
-const WORTH: f64 = 0.97;
+/// The same of an order that differs in a few photographs, at the stated place: of many such, some
+/// one leaves a good deal less of what a model lacks (of frames that are too dark, say).
+const FEW_LESS: f64 = 0.5;
 
 /// An order in which the photographs are likelier than in the stated one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -204,8 +204,7 @@ pub(super) fn likeliest(
     let [own, left] = fit(sides, &stated)?;
     let mut best = (own, None);
     for ([found, misfit], order) in found.into_iter().zip(all) {
-        // Of photographs that a model does not explain some exchange is always a little likelier.
-        if found > best.0 && (!order.is_of_few || misfit < WORTH * left) {
+        if found > best.0 && (!order.is_of_few || misfit < FEW_LESS * left) {
             best = (found, Some(order));
         }
     }
