@@ -58,7 +58,6 @@ impl StudyRun {
         let lock = RunFolder::lock(&self.output, &format!("phicam study {}", self.name))?;
         output::refuse_run(&self.output)?;
         if !self.replace {
-            refuse_page(&self.output, self.name)?;
             refuse_other(&path, &identity, all.end, console)?;
         }
         let scene = &self.invocation.scene;
@@ -92,6 +91,7 @@ impl StudyRun {
             checkpoint.keep(&parts)?;
         }
         let outputs: Vec<Vec<u8>> = parts.into_iter().map(|(_, bytes)| bytes).collect();
+        tell_of_page(&self.output, self.name, console);
         let outcome = pool
             .install(|| self.deliver(&outputs, &self.output))
             .map_err(|e| e.if_stopped(kept))?;
@@ -110,16 +110,16 @@ impl StudyRun {
     }
 }
 
-/// Refuses to replace the page of another study.
-fn refuse_page(folder: &Path, name: &str) -> Result<(), Failure> {
+/// Tells that the page of another study is replaced: its other files stay.
+fn tell_of_page(folder: &Path, name: &str, console: Console) {
     let is_there = |file: &str| folder.join(file).exists();
-    if !is_there(REPORT) || is_there(&format!("{name}.json")) {
-        return Ok(());
+    if is_there(REPORT) && !is_there(&format!("{name}.json")) {
+        let page = folder.join(REPORT);
+        console.say(format!(
+            "{}: that of another study is replaced, whose other files stay",
+            page.display()
+        ));
     }
-    Err(Failure::new(
-        format!("{} is of another study", folder.join(REPORT).display()),
-        "choose another folder (-o), or replace it (--replace)",
-    ))
 }
 
 /// Refuses to replace outputs that were computed with other settings, or cannot be read for now.
