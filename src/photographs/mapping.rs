@@ -104,13 +104,7 @@ impl Mapping {
         let (near, far) = (Frame::of(&walls), Frame::of(&flat));
         let start = direct(&walls, &flat, near, far)?;
         let found = refined(start, marks, lens, near, far)?;
-        let residuals: Vec<f64> = marks
-            .iter()
-            .map(|m| {
-                let at = found.pixel(m.wall).unwrap_or([f64::INFINITY; 2]);
-                libm::hypot(at[0] - m.pixel[0], at[1] - m.pixel[1])
-            })
-            .collect();
+        let residuals: Vec<f64> = marks.iter().map(|mark| found.off(mark)).collect();
         let sum: f64 = residuals.iter().map(|d| d * d).sum();
         if !sum.is_finite() {
             return Err(degenerate());
@@ -132,18 +126,20 @@ impl Mapping {
             let mut others = marks.to_vec();
             let mark = others.remove(at);
             let fitted = Self::from_marks(&others, lens).ok()?;
-            let found = fitted
-                .mapping
-                .pixel(mark.wall)
-                .unwrap_or([f64::INFINITY; 2]);
             Some(OddMark {
                 at,
-                off: libm::hypot(found[0] - mark.pixel[0], found[1] - mark.pixel[1]),
+                off: fitted.mapping.off(&mark),
                 others: fitted.mark_error?,
             })
         };
         let each = (0..marks.len()).filter_map(without);
         each.min_by(|a, b| a.others.total_cmp(&b.others))
+    }
+
+    /// How far from a mark the mapping has it, px; infinite where it has no pixel.
+    fn off(&self, mark: &Mark) -> f64 {
+        let at = self.pixel(mark.wall).unwrap_or([f64::INFINITY; 2]);
+        libm::hypot(at[0] - mark.pixel[0], at[1] - mark.pixel[1])
     }
 
     /// H·(a, b, 1)ᵀ.
