@@ -2284,6 +2284,33 @@ BREAKS = [
         "lab::located::tests::an_order_that_is_easily_mistaken_is_told",
         20,
     ),
+    Break(
+        "Another picture is told from a geometry that is off",
+        "src/lab/score/picture.rs",
+        "let of_best = &d - b;",
+        "let of_best = &d * 0.0 - b * 0.0;",
+        "physics",
+        "verdict::another_picture_is_told_from_a_geometry",
+        21,
+    ),
+    Break(
+        "Spots at one place are told",
+        "src/scene/check/places.rs",
+        "is_again[*a.max(b)] = true;",
+        "is_again[*a.min(b)] = true;",
+        "lib",
+        "scene::check::places::tests::spots_at_one_place_are_told",
+        21,
+    ),
+    Break(
+        "A hidden surface behind the wall is told",
+        "src/scene/check/places.rs",
+        "height < -contact &&",
+        "height > contact &&",
+        "lib",
+        "scene::check::places::tests::a_surface_behind_the_wall_is_told",
+        21,
+    ),
 ]
 
 

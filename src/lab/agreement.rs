@@ -7,7 +7,7 @@ use super::eliminated::Eliminated;
 use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::residual::{Residual, Weights};
-use super::score::{Derivatives, Score, score};
+use super::score::{Derivatives, Remaining, Score, score};
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p, sidak_threshold};
 use crate::num::summation::mean_and_stderr;
@@ -191,11 +191,17 @@ pub fn agree(
         });
         (squares + change.sum::<f64>()) / free
     };
+    let is_refused = chi2_p < share || largest_p < share;
+    let remaining = Remaining {
+        after: &remaining,
+        entries: free,
+        is_refused,
+    };
     let score = derivatives
         .filter(|_| evident)
-        .map(|d| score(evidence, test, share, d, &remaining));
+        .map(|d| score(evidence, test, share, d, remaining));
     let scored = score.as_ref().is_none_or(|s| !s.rejects());
-    let passes = chi2_p >= share && largest_p >= share && scored;
+    let passes = !is_refused && scored;
     // Of what counts, relative to the model's norm. To a dark model everything is unbounded, but
     // nothing remains nothing.
     let norm = |f: &dyn Fn(usize) -> f64| counted.iter().map(|i| f(*i).powi(2)).sum::<f64>().sqrt();

@@ -273,7 +273,7 @@ pub use recoveries::{by_surface, describe_recovery, determined, fits, recovery, 
 pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
-pub use score::{Derivatives, Deviation, Parameter, Score};
+pub use score::{Derivatives, Deviation, ElementLight, Parameter, PictureFit, Score};
 pub use smooth::polynomials;
 pub use study::{Sharing, Study, Work, context, outputs, run};
 pub use summary::describe_render;

@@ -11,6 +11,7 @@
 mod deviation;
 mod followed;
 mod likely;
+mod picture;
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -22,7 +23,9 @@ use super::residual::{Residual, Weights};
 use crate::matrix::Matrix;
 use crate::num::statistics::{normal_two_sided, sidak_p, sidak_threshold};
 pub use deviation::{Derivatives, Deviation, Parameter};
-use likely::{Causes, Remaining, whole};
+pub(super) use likely::Remaining;
+use likely::{Causes, whole};
+pub use picture::{ElementLight, PictureFit};
 
 /// All parameters, each fitted alone.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -38,6 +41,9 @@ pub struct Score {
     /// Then all that explain the difference as well, after whose fit the first is not missed at
     /// 1 %.
     pub likely: Vec<Deviation>,
+    /// The picture of a refused model, if it is unknown: all its reflectances fitted together.
+    #[serde(default)]
+    pub picture: Option<PictureFit>,
     /// Parameters that change nothing or that the scene does not allow.
     pub untested: Vec<String>,
     /// Whether all were fitted as if shadows stayed where they are: those of spheres, meshes and on
@@ -103,7 +109,7 @@ pub(super) fn score(
                 detectable: fit.detectable(limit),
                 reach: parameter.reach,
                 chi2_per_dof: if derivatives.are_named {
-                    remaining(fit.value, &d, &columns)
+                    (remaining.after)(fit.value, &d, &columns)
                 } else {
                     f64::NAN
                 },
@@ -134,7 +140,11 @@ pub(super) fn score(
     };
     let all: Vec<&Deviation> = found.all().collect();
     let beyond = all.iter().copied().filter(|d| found.is_beyond(d)).collect();
-    found.likely = causes.likely(&all, beyond);
+    let (likely, best) = causes.likely(&all, beyond);
+    found.likely = likely;
+    if remaining.is_refused || found.rejects() {
+        found.picture = causes.picture(best.as_ref());
+    }
     found
 }
 

@@ -1,7 +1,9 @@
 //! Traced Φcam against the matrix model of its scene.
 
+use std::sync::{Arc, OnceLock};
+
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged, is_obstructed};
+use crate::model::{Effort, Extent, Kernel, MatrixModel, Occlusion, converged, is_obstructed};
 use crate::num::named::named;
 use crate::scene::Scene;
 
@@ -10,7 +12,8 @@ use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::grounds::{Basis, Grounds};
 use super::measured::{Measured, ValidationError};
-use super::score::{Derivatives, SINGLE_ELEMENTS};
+use super::problem::inverted;
+use super::score::{Derivatives, ElementLight, SINGLE_ELEMENTS};
 use super::unmodelled::unmodelled;
 
 named! {
@@ -107,6 +110,17 @@ pub fn validate(
         phi = centres;
     }
     let share = visible.as_ref().map(|v| &v.share);
+    // A render has the scene's own picture; of measured light nobody knows it.
+    let is_known = test.known.paths.is_some();
+    let unknown = OnceLock::new();
+    let picture = || {
+        let finest = (Integration::Quadrature, Effort::FINEST);
+        let light = || {
+            let model = inverted(scene, kernel, None, occlusion, finest);
+            ElementLight::of(&model.ok()?).map(Arc::new)
+        };
+        unknown.get_or_init(light).clone()
+    };
     let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);
     let basis = Basis {
         scene,
@@ -117,6 +131,7 @@ pub fn validate(
             parameters: &off.parameters,
             of: &|index| off.of(index),
             moved: &|index, size| off.moved(index, size),
+            picture: (!is_known).then_some(&picture),
             are_named: true,
         },
     };
@@ -127,9 +142,9 @@ pub fn validate(
     agreement.unmodelled.splice(0..0, unmodelled(scene));
     if let Some(score) = &mut agreement.score {
         score.shadows_stay = off.are_shadows_still();
-        // A render has the scene's own picture; of measured light nobody knows it.
         let mut hidden = scene.hidden();
-        if test.known.paths.is_none() && hidden.any(|(_, s)| s.elements != [1, 1]) {
+        let is_fitted = is_known || score.picture.is_some();
+        if !is_fitted && hidden.any(|(_, s)| s.elements != [1, 1]) {
             score.untested.push(SINGLE_ELEMENTS.to_owned());
         }
     }

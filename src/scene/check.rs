@@ -1,11 +1,14 @@
 //! What is wrong or suspicious in how the parts of a scene stand to each other.
 
+mod places;
+
 use super::Scene;
 use super::error::{Fault, keys};
 use super::laser::{Profile, Spot};
 use super::surface::{Role, Surface, is_off_the_wall};
 use super::warning::Warning;
 use crate::geometry::{Basis, DVec3, Interaction, Ray, Shape, ShapeId};
+use places::{behind_walls, together};
 
 /// Points of a hidden surface at which visibility is tested: the centres of an n × n grid.
 fn probes(surface: &Surface, n: usize) -> Vec<Interaction> {
@@ -124,6 +127,8 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
         found.push(Warning::FewPhotographs { entries, elements });
     }
     spots(scene, &mut found);
+    together(scene, &mut found);
+    behind_walls(scene, &mut found);
     pixels(scene, &mut found);
     found
 }

@@ -31,6 +31,10 @@ pub enum Warning {
     Mesh(String, Defects),
     /// Colours that come with a surface's mesh and are not used: (surface, what they are).
     MeshPaint(String, String),
+    /// Spots at the place of an earlier one.
+    SpotsTogether(Vec<usize>),
+    /// Part of a hidden surface lies behind a wall: (surface, wall).
+    BehindWall(String, String),
     /// Spots of which a part falls beside the wall and is lost.
     SpotsOverhang(Vec<usize>),
     /// A wavelength, m, far from those of lasers.
@@ -118,6 +122,17 @@ impl fmt::Display for Warning {
                     "{spots} hanging over the wall's edge: what falls beside it is lost"
                 )
             }
+            Self::SpotsTogether(spots) => {
+                let spots = Spots(spots);
+                write!(
+                    f,
+                    "{spots} at the place of an earlier one, to a millionth of the view: what its photograph shows is only shown again"
+                )
+            }
+            Self::BehindWall(hidden, wall) => write!(
+                f,
+                "part of `{hidden}` lies behind `{wall}`, which stops all light to it (check corners and signs)"
+            ),
             Self::SpotsShadowed(spots) => {
                 let spots = Spots(spots);
                 write!(

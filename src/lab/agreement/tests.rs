@@ -224,6 +224,7 @@ fn a_deviation_of_what_entries_share_is_told() {
         parameters: &[scale],
         of: &|_| Some(slope.clone()),
         moved: &|_, size| Some([&slope * size, slope.clone()]),
+        picture: None,
         are_named: true,
     };
     let evidence = Evidence {

@@ -9,6 +9,7 @@ use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel, Occlusion};
 use crate::num::linalg::product;
 use crate::scene::Scene;
+use crate::transport::Control;
 
 use super::unsure::Unsure;
 
@@ -41,7 +42,11 @@ impl Photographs {
     ///
     /// # Errors
     /// [`LabError`], also where a place is not on the wall.
-    pub(super) fn triangles(&self, places: &[[f64; 2]]) -> Result<Vec<Option<Matrix>>, LabError> {
+    pub(super) fn triangles(
+        &self,
+        places: &[[f64; 2]],
+        control: Control<'_>,
+    ) -> Result<Vec<Option<Matrix>>, LabError> {
         if places.is_empty() {
             return Ok(Vec::new());
         }
@@ -50,6 +55,7 @@ impl Photographs {
         let slopes = self.slopes(&scene)?;
         let r = model.albedo.len();
         let one = |l: usize| -> Result<Option<Matrix>, LabError> {
+            control.check()?;
             let a = sensitivity(&model, l);
             let grey = a.column_sum() * GREY;
             if grey.amax() <= 0.0 {

@@ -22,7 +22,7 @@ pub(super) fn refined(
     (rounds, step): (usize, f64),
     control: Control<'_>,
 ) -> Result<Vec<[f64; 2]>, LabError> {
-    let triangles = photographs.triangles(&layout)?;
+    let triangles = photographs.triangles(&layout, control)?;
     let of = |r: &Option<Matrix>| r.as_ref().map(|r| design.information_of(r));
     let dark = LabError::Unsuited("a spot of the layout lights nothing; use another --margin");
     let own: Option<Vec<Matrix>> = triangles.iter().map(of).collect();
@@ -39,7 +39,7 @@ pub(super) fn refined(
         let moves = (0..layout.len()).flat_map(around);
         let moves: Vec<(usize, [f64; 2])> = moves.filter(|(_, p)| places.allow(*p)).collect();
         let to: Vec<[f64; 2]> = moves.iter().map(|(_, place)| *place).collect();
-        let triangles = photographs.triangles(&to)?;
+        let triangles = photographs.triangles(&to, control)?;
         let information: Vec<Option<Matrix>> = triangles.iter().map(of).collect();
         for k in 0..layout.len() {
             let others = |i: &usize| *i != k;

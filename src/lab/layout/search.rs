@@ -32,7 +32,7 @@ pub(super) fn searched(
             "the candidates' information takes more than 2 GB; use fewer --candidates or --elements",
         ));
     }
-    let triangles = photographs.triangles(&all)?;
+    let triangles = photographs.triangles(&all, control)?;
     let lit = all.iter().zip(triangles);
     let (candidates, triangles): (Vec<[f64; 2]>, Vec<Matrix>) =
         lit.filter_map(|(place, r)| Some((*place, r?))).unzip();
@@ -50,7 +50,7 @@ pub(super) fn searched(
     let rounds = (plan.refine, 0.5 * places.spacing(plan.candidates));
     let layout = refined(&design, photographs, places, layout, rounds, control)?;
     let lit: Vec<Matrix> = photographs
-        .triangles(&layout)?
+        .triangles(&layout, control)?
         .into_iter()
         .flatten()
         .collect();

@@ -70,7 +70,7 @@ impl LayoutTasks {
     ) -> Result<Row, LabError> {
         let mut photographs = context.photographs.clone();
         photographs.scene = scene.clone();
-        let triangles = photographs.triangles(places)?;
+        let triangles = photographs.triangles(places, control)?;
         let lit: Vec<[f64; 2]> = places
             .iter()
             .zip(&triangles)

@@ -107,7 +107,9 @@ fn layouts_keep_the_rules() {
         );
     }
     let photographs = photographs(&scene, &plan);
-    let triangles = photographs.triangles(&found.layout).unwrap();
+    let triangles = photographs
+        .triangles(&found.layout, Control::none())
+        .unwrap();
     let refined = left(
         triangles.into_iter().flatten().collect(),
         &photographs.factor,
@@ -150,7 +152,7 @@ fn the_risk_is_that_of_the_equation() {
         }
         let want = information.try_inverse().unwrap().trace() / k.trace();
         let risk = |own: &Photographs| {
-            let triangles = own.triangles(&places).unwrap();
+            let triangles = own.triangles(&places, Control::none()).unwrap();
             left(triangles.into_iter().flatten().collect(), &own.factor)
                 .unwrap()
                 .risk

@@ -126,8 +126,23 @@ impl NoiseStudy {
                     figure(level, 2)
                 )
             }
+            _ if self.has_no_contrast((b.picture, b.elements)) => {
+                format!(
+                    "{object}: it has no contrast, and so no MTF: see its root mean square error"
+                )
+            }
             _ => format!("{object}: no method reaches it{published}"),
         }
+    }
+
+    /// Whether no recovery of an object has a modulation, though there are some.
+    fn has_no_contrast(&self, object: (Picture, usize)) -> bool {
+        let own = self
+            .curves
+            .iter()
+            .filter(|c| (c.picture, c.elements) == object);
+        let mut found = own.flat_map(|c| &c.points).filter(|p| p.failed < p.draws);
+        found.next().is_some_and(|p| p.mtf_raw.is_none()) && found.all(|p| p.mtf_raw.is_none())
     }
 
     /// One measure: a plot for each object and number of elements, a line for each method. Render

@@ -459,4 +459,12 @@ fn the_scenes_own_picture_is_studied_beside_the_boards() {
     assert_eq!(json["curves"][2]["board"], 2);
     // The bench's own picture is a board: nothing is added.
     assert_eq!(run(&scene, &plan).curves.len(), 2);
+    // An even picture has no modulation, and no method fails at it.
+    let text = scene
+        .text
+        .replace("{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }", "0.4");
+    let even = Scene::from_toml("even", &text).unwrap();
+    let sentence = run(&even, &plan).describe().sentence;
+    let told = "the scene's own picture on 6 × 6 elements: it has no contrast, and so no MTF";
+    assert!(sentence.contains(told), "{sentence}");
 }

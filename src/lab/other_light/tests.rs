@@ -207,6 +207,7 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
         parameters: &[parameter],
         of: &|_| Some(d.clone()),
         moved: &|_, _| None,
+        picture: None,
         are_named: true,
     };
     let adjusted = Evidence {

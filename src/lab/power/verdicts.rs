@@ -59,6 +59,7 @@ pub(super) fn verdicts(
             parameters: &models.parameters,
             of: &|index| models.slopes[index].clone(),
             moved: &|_, _| None,
+            picture: None,
             are_named: false,
         },
     };

@@ -1,7 +1,10 @@
 //! Parameters of a scene, and what each deviates by.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
+use super::picture::ElementLight;
 use crate::matrix::Matrix;
 
 /// A parameter of the scene.
@@ -31,6 +34,8 @@ pub struct Derivatives<'a> {
     /// Φ(θ) − Φ(0) and ∂Φ/∂θ at θ of a parameter, W and W per unit; `None` where only the
     /// derivative at 0 is known.
     pub moved: &'a (dyn Fn(usize, f64) -> Option<[Matrix; 2]> + Sync),
+    /// Light of the elements, where the picture is not known.
+    pub picture: Option<&'a (dyn Fn() -> Option<Arc<ElementLight>> + Sync)>,
     /// Whether causes are looked for, and what χ² each leaves: that takes many times as long as the
     /// test. Where not, χ² is NaN.
     pub are_named: bool,

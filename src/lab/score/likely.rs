@@ -6,6 +6,8 @@ use rayon::prelude::*;
 
 use super::deviation::{Derivatives, Deviation};
 use super::followed::followed;
+use super::picture::PictureFit;
+use crate::lab::certainty::Errors;
 use crate::lab::eliminated::Eliminated;
 use crate::lab::evidence::{Evidence, Test};
 use crate::lab::residual::{Residual, Weights};
@@ -17,8 +19,16 @@ const FOLLOWED: usize = 4;
 /// Level at which a cause is told from the most likely one.
 const TOLD_APART: f64 = 0.01;
 
-/// χ²/dof of the entries after a deviation: of the model `model + θ·d` in the columns `columns`.
-pub(in crate::lab) type Remaining<'a> = &'a (dyn Fn(f64, &Matrix, &Range<usize>) -> f64 + Sync);
+/// What χ² says of the model.
+#[derive(Clone, Copy)]
+pub(in crate::lab) struct Remaining<'a> {
+    /// χ²/dof of the entries after a deviation: of `model + θ·d` in these columns.
+    pub after: &'a (dyn Fn(f64, &Matrix, &Range<usize>) -> f64 + Sync),
+    /// Entries less what was fitted first.
+    pub entries: f64,
+    /// Whether χ² or the largest |z| refuses the model.
+    pub is_refused: bool,
+}
 
 /// What may explain a difference.
 pub(super) struct Causes<'a> {
@@ -39,8 +49,12 @@ struct Cause {
 
 impl Causes<'_> {
     /// The most likely cause, of those `beyond` their limit the one that leaves the least χ², and
-    /// those of `all` that explain the difference as well.
-    pub(super) fn likely(&self, all: &[&Deviation], mut beyond: Vec<&Deviation>) -> Vec<Deviation> {
+    /// those of `all` that explain the difference as well; and what that cause changes.
+    pub(super) fn likely(
+        &self,
+        all: &[&Deviation],
+        mut beyond: Vec<&Deviation>,
+    ) -> (Vec<Deviation>, Option<Matrix>) {
         let least = |a: &&Deviation, b: &&Deviation| a.chi2_per_dof.total_cmp(&b.chi2_per_dof);
         let all = || all.iter().copied().filter(|d| d.is_within_reach(d.value));
         // A first step may go too far.
@@ -50,7 +64,7 @@ impl Causes<'_> {
         let chi2 = |cause: &Cause| cause.deviation.chi2_per_dof;
         causes.sort_by(|a, b| chi2(a).total_cmp(&chi2(b)));
         let Some((best, others)) = causes.split_first() else {
-            return Vec::new();
+            return (Vec::new(), None);
         };
         let limit = sidak_threshold(TOLD_APART, all().count() as u64);
         let is_as_good = |other: &Cause| self.missed(best, other).abs() <= limit;
@@ -66,9 +80,22 @@ impl Causes<'_> {
         let followed = others.iter().filter(|other| is_as_good(other));
         rest.extend(followed.map(|other| other.deviation.clone()));
         rest.sort_by(|a, b| least(&a, &b));
-        std::iter::once(best.deviation.clone())
-            .chain(rest)
-            .collect()
+        let first = std::iter::once(best.deviation.clone());
+        (first.chain(rest).collect(), Some(best.change.clone()))
+    }
+
+    /// The picture as a cause, beside what the best single parameter changes. Errors that entries
+    /// share look like one, and a free scale would change with it.
+    pub(super) fn picture(&self, best: Option<&Matrix>) -> Option<PictureFit> {
+        let evidence = self.residual.evidence;
+        let is_free = evidence.eliminated.is_some_and(Eliminated::is_scale_free);
+        if is_free || self.test.known.errors != Errors::Independent {
+            return None;
+        }
+        let all = 0..evidence.model.ncols();
+        let remaining = |change: &Matrix| (self.remaining.after)(1.0, change, &all);
+        let picture = (self.derivatives.picture?)()?;
+        picture.fit(self.residual, best, (&remaining, self.remaining.entries))
     }
 
     /// z of the best cause after another was fitted, of what that does not change.
@@ -129,7 +156,7 @@ impl Causes<'_> {
             value: found.fit.value,
             stderr: found.fit.stderr,
             bias: found.fit.bias,
-            chi2_per_dof: (self.remaining)(1.0, &found.change, &columns),
+            chi2_per_dof: (self.remaining.after)(1.0, &found.change, &columns),
             is_followed: true,
             ..d.clone()
         };

@@ -11,6 +11,10 @@ const UNEXPLAINED: f64 = 0.1;
 /// Standard errors within which a model's bend does not matter: of a deviation so large a tenth of
 /// its size is one.
 const STRAIGHT: f64 = 10.0;
+/// |z| of a parameter after the picture was fitted beyond which that misses it: 1 % of one
+/// parameter chosen among a hundred.
+const MISSES: f64 = 3.9;
+const NO_SINGLE: &str = "no single parameter of the scene explains it";
 /// Causes that are named beside the most likely one.
 const NAMED: usize = 3;
 
@@ -18,8 +22,49 @@ impl Score {
     /// The most likely cause of a χ²/dof of so many degrees of freedom, and what explains the
     /// difference as well; whether it does is tested at `level`.
     pub(in crate::lab) fn cause(&self, chi2_per_dof: f64, dof: f64, level: f64) -> String {
+        let single = self.single_cause(chi2_per_dof, dof, level);
+        let Some(picture) = &self.picture else {
+            return single;
+        };
+        let left = significant(picture.chi2_per_dof, 4);
+        let fitted = format!(
+            "all {} reflectances fitted together between 0 and 1",
+            picture.elements
+        );
+        let explains = chi_square_sf(picture.chi2_per_dof * dof, dof) >= level;
+        let unexplained = picture.chi2_per_dof - 1.0 > UNEXPLAINED * (chi2_per_dof - 1.0);
+        if !explains && unexplained {
+            return format!(
+                "{single}. Another picture does not explain it: {fitted} leave χ²/dof {left}"
+            );
+        }
+        match (picture.is_missed, picture.misses.abs() > MISSES) {
+            (true, false) => {
+                let of = if single.starts_with(NO_SINGLE) {
+                    ""
+                } else {
+                    "of single parameters "
+                };
+                format!(
+                    "another picture than the scene's, element by element: {fitted} leave χ²/dof {left}; {of}{single}"
+                )
+            }
+            (false, true) => {
+                format!("{single}. Another picture explains less: {fitted} leave χ²/dof {left}")
+            }
+            (false, false) => format!(
+                "{single}; not told from another picture than the scene's, element by element: {fitted} leave χ²/dof {left}"
+            ),
+            (true, true) => format!(
+                "{single}. It and another picture each explain what the other does not: {fitted} leave χ²/dof {left}"
+            ),
+        }
+    }
+
+    /// The same of single parameters.
+    fn single_cause(&self, chi2_per_dof: f64, dof: f64, level: f64) -> String {
         let Some((first, rest)) = self.likely.split_first() else {
-            return "no single parameter of the scene explains it".to_owned();
+            return NO_SINGLE.to_owned();
         };
         let left = first.chi2_per_dof - 1.0;
         let explains = chi_square_sf(first.chi2_per_dof * dof, dof) >= level;
@@ -30,7 +75,7 @@ impl Score {
                 " as far as the model is straight (one that is not small is not seen so)"
             };
             return format!(
-                "no single parameter of the scene explains it{only}: the best, {}, leaves χ²/dof {}. Several \
+                "{NO_SINGLE}{only}: the best, {}, leaves χ²/dof {}. Several \
                  at once may, or another order, orientation or unit of the photographs (`phicam locate` \
                  tests the order)",
                 first.label(),

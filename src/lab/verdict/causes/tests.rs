@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::score::PictureFit;
 
 fn deviation(chi2_per_dof: f64) -> Deviation {
     Deviation {
@@ -82,4 +83,38 @@ fn what_explains_not_all_says_so() {
         "{}",
         told(1.02)
     );
+}
+
+/// Which of a picture and a parameter explains what the other leaves stands first, or that neither
+/// does, or that they are not told apart.
+#[test]
+fn a_picture_is_named_by_what_it_explains() {
+    let told = |left: f64, misses: f64, is_missed: bool| {
+        let picture = PictureFit {
+            elements: 64,
+            free: 10,
+            chi2_per_dof: left,
+            misses,
+            is_missed,
+        };
+        let score = Score {
+            likely: vec![deviation(1.0)],
+            picture: Some(picture),
+            ..Score::default()
+        };
+        score.cause(40.0, 1000.0, 1e-3)
+    };
+    let [first, single] = ["another picture than the scene's", "hinge angle +6.40"];
+    for (left, misses, is_missed, starts, holds) in [
+        (1.0, 3.0, true, first, "of single parameters hinge angle"),
+        (1.0, 5.0, false, single, "explains less"),
+        (1.0, -3.0, false, single, "not told from another picture"),
+        (1.0, -5.0, true, single, "each explain"),
+        (20.0, 3.0, true, single, "does not explain it"),
+    ] {
+        let words = told(left, misses, is_missed);
+        assert!(words.starts_with(starts), "{words}");
+        assert!(words.contains(holds), "{words}");
+        assert!(words.contains(&format!("χ²/dof {left}")), "{words}");
+    }
 }
