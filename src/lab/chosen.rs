@@ -120,10 +120,19 @@ fn went_by(choice: Choice) -> (Option<&'static str>, BTreeMap<&'static str, f64>
                 ("patches", patches as f64),
             ],
         ),
-        Choice::Averaged { if_unalike } => {
-            let times =
+        Choice::Averaged {
+            if_unalike,
+            if_uneven,
+        } => {
+            let unalike =
                 if_unalike.map(|times| ("errors if neighbours are not alike, times", times));
-            ("averaged", times.into_iter().collect())
+            let uneven = if_uneven.into_iter().flat_map(|[p, times]| {
+                [
+                    ("probability of one reflectance", p),
+                    ("errors if it is not one, times", times),
+                ]
+            });
+            ("averaged", unalike.into_iter().chain(uneven).collect())
         }
         Choice::Estimated => ("estimated", vec![]),
         Choice::Gcv {

@@ -13,7 +13,7 @@ use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
     DETERMINED, HALF, alike_untold, between_neighbours, by_entries, few_replicates, integrated,
-    overstated, shared, undetermined, unseen,
+    overstated, shared, undetermined, uneven, unseen,
 };
 use misfit::{misfit, outlier};
 
@@ -47,6 +47,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         impossible(found),
         undetermined(found, judged),
         unseen(found, judged),
+        uneven(found),
         alike_untold(found, judged),
         few_directions(found),
         noise(found),

@@ -1,6 +1,7 @@
 //! What is said of a calibration.
 
 mod directions;
+mod gains;
 mod picture;
 mod tables;
 
@@ -249,6 +250,7 @@ impl Calibration {
                 listed(&far)
             ));
         }
+        notes.extend(self.gains_beyond());
         let by_pictures = self.by_pictures();
         if !by_pictures.is_empty() {
             notes.push(format!(

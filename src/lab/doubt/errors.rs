@@ -144,11 +144,30 @@ pub(super) fn undetermined(found: &Recovered, judged: &Judged) -> Option<String>
     })
 }
 
+/// Standard errors of a picture that is taken for one reflectance throughout.
+pub(super) fn uneven(found: &Recovered) -> Option<String> {
+    let Choice::Averaged {
+        if_uneven: Some([p, times]),
+        ..
+    } = found.choice
+    else {
+        return None;
+    };
+    (times > LARGER).then(|| {
+        format!(
+            "that all is of one reflectance has a probability of {} % (2 % before the photographs), and standard errors and bands              count it so. Of a picture that varies, if only a little, they are {} times as large in the mean",
+            figure(100.0 * p, 2),
+            significant(times, 2)
+        )
+    })
+}
+
 /// Standard errors that take neighbours to be as alike as in most pictures, where the photographs
 /// do not say how alike they are.
 pub(super) fn alike_untold(found: &Recovered, judged: &Judged) -> Option<String> {
     let Choice::Averaged {
         if_unalike: Some(times),
+        ..
     } = found.choice
     else {
         return None;

@@ -21,7 +21,8 @@
 //! reflectance throughout, τ = 0. The estimate is the mean of that mixture, its covariance and
 //! bands those of the mixture. They hold over all pictures that are such, not for each length:
 //! where the photographs leave the shortest ℓ as likely as others, those of elements that nothing
-//! ties to their neighbours are too small, and by how much is said with them.
+//! ties to their neighbours are too small, and by how much is said with them. So are they where one
+//! reflectance throughout is likely only because the photographs hardly show that it is not.
 
 mod mixture;
 
@@ -151,6 +152,7 @@ pub(super) fn with_alike(
     };
     recovered.choice = Choice::Averaged {
         if_unalike: found.if_unalike,
+        if_uneven: found.if_uneven,
     };
     recovered.log_evidence = Some(evidence);
     recovered.standard_error = Some(found.standard_error);

@@ -55,6 +55,9 @@ pub enum Choice {
         /// neighbours not alike: how many times too small these then are. None where the
         /// photographs speak against that.
         if_unalike: Option<f64>,
+        /// Probability that all is of one reflectance, one of fifty beforehand, and how many times
+        /// too small the standard errors are if it is not. None where that counts for nothing.
+        if_uneven: Option<[f64; 2]>,
     },
     /// Estimated together with the reflectances.
     Estimated,

@@ -13,8 +13,8 @@ use crate::recovery::{BandKind, Bands, RecoveryError, bands};
 /// Elements up to which the covariance matrix is made.
 const MOST_COVARIANCE: usize = 2048;
 
-/// The least probability of the shortest length at which the photographs do not speak against it:
-/// it is then within the middle 95 % of lengths.
+/// The least probability of the shortest length, or of one reflectance throughout, at which the
+/// photographs do not speak against it: it is then within the middle 95 %.
 const NOT_EXCLUDED: f64 = 0.025;
 
 /// The first two moments of some triples' pictures, by their weights.
@@ -62,6 +62,7 @@ pub(super) struct Mixture {
     pub(super) freedom: f64,
     /// As of [`Choice::Averaged`](crate::recovery::Choice::Averaged).
     pub(super) if_unalike: Option<f64>,
+    pub(super) if_uneven: Option<[f64; 2]>,
 }
 
 impl Mixture {
@@ -150,7 +151,7 @@ impl Seen {
         let n = self.v.ncols();
         let left = self.left();
         let level = self.v.column_sum();
-        let (mut all, mut unalike) = (Moments::zero(n), Moments::zero(n));
+        let [mut all, mut unalike, mut uneven] = [(); 3].map(|()| Moments::zero(n));
         let mut covariance = (n <= MOST_COVARIANCE).then(|| DMatrix::zeros(n, n));
         let mut parts: Vec<(f64, DVector<f64>, DVector<f64>)> = Vec::new();
         let mut freedom = 0.0;
@@ -177,8 +178,11 @@ impl Seen {
             let unseen = factor.forward(errors.transpose()).trace();
             freedom += triple.weight * (self.y.len() as f64 - unseen);
             all.add(triple.weight, &found, &variance);
-            if triple.length == 0 && triple.variance.spread > 0.0 {
-                unalike.add(triple.weight, &found, &variance);
+            if triple.variance.spread > 0.0 {
+                uneven.add(triple.weight, &found, &variance);
+                if triple.length == 0 {
+                    unalike.add(triple.weight, &found, &variance);
+                }
             }
             if let Some(covariance) = &mut covariance {
                 if alike.as_ref().is_none_or(|(of, _)| *of != triple.length) {
@@ -204,8 +208,10 @@ impl Seen {
             *covariance *= self.unit * self.unit;
         }
         let variance = all.variance();
-        let if_unalike = (unalike.weight > NOT_EXCLUDED)
-            .then(|| mean_ratio(&unalike.square_about(&all.mean), &variance).sqrt());
+        let times = |part: &Moments| mean_ratio(&part.square_about(&all.mean), &variance).sqrt();
+        let if_unalike = (unalike.weight > NOT_EXCLUDED).then(|| times(&unalike));
+        let is_asked = uneven.weight > 0.0 && 1.0 - uneven.weight > NOT_EXCLUDED;
+        let if_uneven = is_asked.then(|| [1.0 - uneven.weight, times(&uneven)]);
         let bands = confidence.map(|confidence| Bands {
             confidence,
             intervals: (0..n).map(|j| interval(&parts, j, confidence)).collect(),
@@ -218,6 +224,7 @@ impl Seen {
             bands,
             freedom,
             if_unalike,
+            if_uneven,
         })
     }
 }
