@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::statistics::chi_square_sf;
+use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
 
 /// Relative deviations of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,13 +32,18 @@ impl Deviations {
         self.standard_error.iter().map(known).sum()
     }
 
-    /// Probability of as large a Σ ε̂²/σ² if the factors are as they were said to be: that of χ²
-    /// with as many degrees of freedom as factors are determined, which is its mean. None where
-    /// less than one is.
+    /// Probability of as large a Σ ε̂²/σ², or of as large an |ε̂|/σ, if the factors are as they were
+    /// said to be: twice the smaller of that of χ² with as many degrees of freedom as factors are
+    /// determined, which is its mean, and of the largest of as many normal numbers. None where less
+    /// than one is.
     pub fn probability(&self) -> Option<f64> {
         let freedom = self.freedom();
         let chi2 = self.size.norm_squared() / (self.known_to * self.known_to);
-        (freedom >= 1.0).then(|| chi_square_sf(chi2, freedom))
+        (freedom >= 1.0).then(|| {
+            let whole = chi_square_sf(chi2, freedom);
+            let largest = sidak_p(normal_two_sided(self.largest()), freedom.ceil() as u64);
+            (2.0 * whole.min(largest)).min(1.0)
+        })
     }
 }
 
@@ -96,8 +101,14 @@ mod tests {
             standard_error: DVector::from_column_slice(&[0.1, 0.0, 0.0]),
             ..factors
         };
-        // χ² of two degrees: e^(−x/2).
-        let expected = libm::exp(-0.5 * (0.25 + 1.44));
-        assert!((two.probability().unwrap() - expected).abs() < 1e-9);
+        // χ² of two degrees: e^(−x/2) = 0.43; the larger of two beyond 1.2, by tables, is less.
+        let expected = 2.0 * (1.0 - (1.0 - 0.230_139_34f64).powi(2));
+        assert!((two.probability().unwrap() - expected).abs() < 1e-7);
+        let even = Deviations {
+            size: DVector::from_column_slice(&[0.0, 0.15, -0.15]),
+            ..two
+        };
+        let expected = 2.0 * libm::exp(-0.5 * 4.5);
+        assert!((even.probability().unwrap() - expected).abs() < 1e-9);
     }
 }

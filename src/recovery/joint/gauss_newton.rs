@@ -81,22 +81,31 @@ pub(in crate::recovery) fn recover(
         noise: noise(&start),
         directions: 0.0,
     };
-    let of_prior = method == Method::JointGp;
-    let (mut steps, mut settled) = (0, false);
-    while steps < MOST_STEPS && !settled {
-        steps += 1;
-        let linear = Linear::about(problem, &at);
-        let found = linear.about_one(by(method, &linear.problem(&base), &quick)?);
-        let noise = noise(&found);
-        if of_prior {
-            at.directions = found.effective_rank;
+    let settle = |method: Method, at: &mut Estimates| -> Result<(usize, bool), RecoveryError> {
+        let (mut steps, mut settled) = (0, false);
+        while steps < MOST_STEPS && !settled {
+            steps += 1;
+            let linear = Linear::about(problem, at);
+            let found = linear.about_one(by(method, &linear.problem(&base), &quick)?);
+            let noise = noise(&found);
+            if method == Method::JointGp {
+                at.directions = found.effective_rank;
+            }
+            settled = (noise / at.noise - 1.0).abs() < SETTLED;
+            // Where whole steps go back and forth, half of them do not.
+            let share = if steps > WHOLE_STEPS { 0.5 } else { 1.0 };
+            settled &= at.take(&found, share) < SETTLED;
+            at.noise *= libm::pow(noise / at.noise, share);
         }
-        settled = (noise / at.noise - 1.0).abs() < SETTLED;
-        // Where whole steps go back and forth, half of them do not.
-        let share = if steps > WHOLE_STEPS { 0.5 } else { 1.0 };
-        settled &= at.take(&found, share) < SETTLED;
-        at.noise *= libm::pow(noise / at.noise, share);
-    }
+        Ok((steps, settled))
+    };
+    // Before the factors are found no picture explains the photographs, and `joint-tv` refuses them.
+    let before = match method {
+        Method::JointTv => settle(Method::Joint, &mut at)?.0,
+        _ => 0,
+    };
+    let (steps, mut settled) = settle(method, &mut at)?;
+    let steps = before + steps;
     let linear = Linear::about(problem, &at);
     let shared = Shared::default();
     let about = linear.problem(&base).sharing(&shared);

@@ -698,6 +698,31 @@ fn every_method_finds_the_factors() {
     }
 }
 
+/// Right photographs of much larger factors than noise are never refused as understated noise: the
+/// first linear problems, about factors of 1, explain none of them. 40 draws; the factors are found
+/// to five standard deviations of the noise of a frame, 0.1 % in 16 pixels, beside the picture's.
+#[test]
+fn large_factors_are_not_taken_for_understated_noise() {
+    let mut small = Small::new();
+    small.stderr *= 0.05;
+    let nuisance = Nuisance {
+        frame_gain: Some(0.2),
+        ..Nuisance::default()
+    };
+    for seed in 0..40 {
+        let phi = small.drawn(0.2, 0.0, 500 + seed);
+        let problem = small.problem(&phi, nuisance);
+        let found = recover(Method::JointTv, &problem, &Options::default());
+        let found = found.unwrap_or_else(|error| panic!("{seed}: {error}"));
+        assert!(gains(&found).settled, "{seed}");
+        assert!(
+            found.relative_residual < 2e-3,
+            "{}",
+            found.relative_residual
+        );
+    }
+}
+
 #[test]
 fn deviations_without_meaning_are_refused() {
     let small = Small::new();
