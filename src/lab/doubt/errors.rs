@@ -155,7 +155,8 @@ pub(super) fn uneven(found: &Recovered) -> Option<String> {
     };
     (times > LARGER).then(|| {
         format!(
-            "that all is of one reflectance has a probability of {} % (2 % before the photographs), and standard errors and bands              count it so. Of a picture that varies, if only a little, they are {} times as large in the mean",
+            "that all is of one reflectance has a probability of {} % (2 % before the photographs), and standard errors and bands \
+             count it so. Of a picture that varies, if only a little, they are {} times as large in the mean",
             figure(100.0 * p, 2),
             significant(times, 2)
         )

@@ -21,8 +21,8 @@ use crate::num::statistics::chi_square_sf;
 /// Level at which one cause is told to miss what the other explains.
 const TOLD_APART: f64 = 0.01;
 
-/// Entries of their light that are held at once, 0.3 GB.
-const MOST: usize = 40_000_000;
+/// Entries times squared elements, beyond which a verdict would wait for seconds.
+const MOST: f64 = 1e10;
 
 /// Light of the elements of the hidden surfaces.
 #[derive(Clone, Debug)]
@@ -50,12 +50,13 @@ pub struct PictureFit {
 }
 
 impl ElementLight {
-    /// That of all elements of `model`; none of fewer than two, and of so many that their light is
-    /// too much to hold.
+    /// That of all elements of `model`; none of fewer than two, and of too many to be fitted in
+    /// passing.
     pub(in crate::lab) fn of(model: &MatrixModel) -> Option<Self> {
         let elements = model.albedo.len();
         let (pixels, spots) = (model.camera_side.nrows(), model.laser_side.ncols());
-        if elements < 2 || elements * pixels * spots > MOST {
+        let work = (pixels * spots) as f64 * (elements * elements) as f64;
+        if elements < 2 || work > MOST {
             return None;
         }
         let each: Vec<usize> = (0..elements).collect();
