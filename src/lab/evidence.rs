@@ -30,6 +30,14 @@ impl Evidence<'_> {
         self.left_out.is_none_or(|flags| flags[at] == 0.0)
     }
 
+    /// What is left of a deviation, W, by what was fitted first; none if that is nothing.
+    pub(super) fn left_of(&self, deviation: Matrix) -> Option<Matrix> {
+        match self.eliminated {
+            None => Some(deviation),
+            Some(terms) => terms.left_of(&deviation),
+        }
+    }
+
     /// What the model may be off by, W.
     pub(super) fn bound(&self, at: usize) -> f64 {
         self.bound.map_or(0.0, |b| b[at])

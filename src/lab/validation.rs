@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::matrix::Matrix;
-use crate::model::{Effort, Extent, Kernel, MatrixModel, Occlusion, converged, is_obstructed};
+use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged, is_obstructed};
 use crate::num::named::named;
 use crate::scene::Scene;
 
@@ -12,7 +12,6 @@ use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::grounds::{Basis, Grounds};
 use super::measured::{Measured, ValidationError};
-use super::problem::inverted;
 use super::score::{Derivatives, ElementLight, SINGLE_ELEMENTS};
 use super::unmodelled::unmodelled;
 
@@ -114,11 +113,7 @@ pub fn validate(
     let is_known = test.known.paths.is_some();
     let unknown = OnceLock::new();
     let picture = || {
-        let finest = (Integration::Quadrature, Effort::FINEST);
-        let light = || {
-            let model = inverted(scene, kernel, None, occlusion, finest);
-            ElementLight::of(&model.ok()?).map(Arc::new)
-        };
+        let light = || ElementLight::of(scene, kernel, occlusion).map(Arc::new);
         unknown.get_or_init(light).clone()
     };
     let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);

@@ -179,11 +179,7 @@ impl Causes<'_> {
 
 /// The same with all spots.
 pub(super) fn whole(evidence: &Evidence<'_>, d: &Matrix, spot: Option<usize>) -> Option<Matrix> {
-    let own = of_spot(d, spot);
-    match evidence.eliminated {
-        None => Some(own),
-        Some(terms) => terms.left_of(&own),
-    }
+    evidence.left_of(of_spot(d, spot))
 }
 
 /// The derivative by a parameter of one spot.

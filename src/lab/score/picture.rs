@@ -10,13 +10,13 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::likely::whole;
 use crate::lab::residual::Residual;
 use crate::matrix::Matrix;
-use crate::model::{Factors, MatrixModel};
+use crate::model::{Effort, ElementGrid, Factors, Kernel, MatrixModel, Occlusion, element_grids};
 use crate::num::linalg::{Tolerance, Triangle, least_squares, triangle};
 use crate::num::quadratic::{Bounds, BoxSolution, box_least_squares};
 use crate::num::statistics::chi_square_sf;
+use crate::scene::Scene;
 
 /// Level at which one cause is told to miss what the other explains.
 const TOLD_APART: f64 = 0.01;
@@ -50,15 +50,23 @@ pub struct PictureFit {
 }
 
 impl ElementLight {
-    /// That of all elements of `model`; none of fewer than two, and of too many to be fitted in
-    /// passing.
-    pub(in crate::lab) fn of(model: &MatrixModel) -> Option<Self> {
-        let elements = model.albedo.len();
-        let (pixels, spots) = (model.camera_side.nrows(), model.laser_side.ncols());
+    /// That of all elements of `scene`, by the physical kernel integrated over each; none of fewer
+    /// than two, and of too many to be fitted in passing.
+    pub(in crate::lab) fn of(scene: &Scene, kernel: Kernel, occlusion: Occlusion) -> Option<Self> {
+        let grids = element_grids(scene, None).ok()?;
+        let elements = grids.iter().map(ElementGrid::len).sum();
+        let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
         let work = (pixels * spots) as f64 * (elements * elements) as f64;
         if elements < 2 || work > MOST {
             return None;
         }
+        let model = match kernel {
+            Kernel::Physical => {
+                MatrixModel::over_areas(scene, kernel, None, occlusion, Effort::FINEST)
+            }
+            Kernel::Published => MatrixModel::with(scene, kernel, None, occlusion),
+        };
+        let model = model.ok()?;
         let each: Vec<usize> = (0..elements).collect();
         let (camera, laser, element) = match &model.factors {
             Some(Factors { terms, .. }) => (&terms.camera, &terms.laser, &terms.element),
@@ -74,7 +82,7 @@ impl ElementLight {
         }
         Some(Self {
             light,
-            rho: model.albedo.clone(),
+            rho: model.albedo,
         })
     }
 
@@ -93,7 +101,7 @@ impl ElementLight {
         let mut columns = DMatrix::zeros(rows, elements + 1);
         for (j, own) in self.light.column_iter().enumerate() {
             let own = Matrix::from_column_slice(roots.nrows(), roots.ncols(), own.as_slice());
-            if let Some(left) = whole(&evidence, &own, None) {
+            if let Some(left) = evidence.left_of(own) {
                 columns.set_column(j, &weighted(&left));
             }
         }

@@ -99,7 +99,7 @@ pub(in crate::recovery) fn recover(
         }
         Ok((steps, settled))
     };
-    // Before the factors are found no picture explains the photographs, and `joint-tv` refuses them.
+    // Before the factors are found no picture explains the photographs: `joint-tv` refuses them.
     let before = match method {
         Method::JointTv => settle(Method::Joint, &mut at)?.0,
         _ => 0,

@@ -162,8 +162,8 @@ fn drawn(normal: &mut impl FnMut() -> f64, tau: f64, length: f64, own: f64) -> D
 /// Pictures that are what the method takes them for, spread, length and independent share drawn as
 /// it says: of all their elements 95 % bands cover 95 %, and z = (ρ̂ − ρ)/σ has the square 1 in the
 /// mean; where they may be of one reflectance, which none is, the square is that of the errors that
-/// are told for pictures that vary. 300 pictures; elements of one hang together, so the error is taken from the scatter among
-/// pictures, five standard errors.
+/// are told for pictures that vary. 300 pictures; elements of one hang together, so the error is
+/// taken from the scatter among pictures, five standard errors.
 #[test]
 fn pictures_of_the_prior_are_covered_as_promised() {
     let bench = Bench::new(6.0, 5, 8);
