@@ -32,10 +32,10 @@ impl Deviations {
         self.standard_error.iter().map(known).sum()
     }
 
-    /// Probability of as large a Σ ε̂²/σ², or of as large an |ε̂|/σ, if the factors are as they were
-    /// said to be: twice the smaller of that of χ² with as many degrees of freedom as factors are
-    /// determined, which is its mean, and of the largest of as many normal numbers. None where less
-    /// than one is.
+    /// Probability of as large a Σ ε̂²/σ², or of as large an |ε̂|/σ, if the factors are as they
+    /// were said to be: twice the smaller of that of χ² with as many degrees of freedom as factors
+    /// are determined, which is its mean, and of the largest of as many normal numbers. None where
+    /// less than one is.
     pub fn probability(&self) -> Option<f64> {
         let freedom = self.freedom();
         let chi2 = self.size.norm_squared() / (self.known_to * self.known_to);
