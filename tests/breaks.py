@@ -2323,8 +2323,8 @@ BREAKS = [
     Break(
         "Errors of a picture that is not of one reflectance after all are told",
         "src/recovery/joint/gaussian_process/mixture.rs",
-        "uneven.add(triple.weight, &found, &variance);",
-        "uneven.add(triple.weight, &found, &(&variance * 0.25));",
+        "[1.0 - uneven.weight, times(&uneven)]",
+        "[1.0 - uneven.weight, 3.0 * times(&uneven)]",
         "lib",
         "recovery::joint::gaussian_process::tests::pictures_of_the_prior_are_covered_as_promised",
         22,
