@@ -6,7 +6,8 @@
 //! Where other light or the scale was fitted first ([`Eliminated`](super::eliminated::Eliminated)),
 //! d is what that leaves of ∂model/∂θ.
 //!
-//! The likeliest causes of a difference are then followed as far as the model bends.
+//! The likeliest causes of a difference are then followed as far as the model bends, and where the
+//! picture is unknown it is fitted beside them ([`picture`]).
 
 mod deviation;
 mod followed;
