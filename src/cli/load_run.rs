@@ -86,6 +86,12 @@ fn folder_meant(given: &Path) -> String {
         _ if name.ends_with(".toml") || builtins().iter().any(|b| b.name == name) => format!(
             "that is a scene: compute it first, `phicam run {name} -o out`, then give the folder `out`"
         ),
+        _ if given.join("phi.npy").is_file() && given.join("scene.toml").is_file() => {
+            format!(
+                "photographs that phicam did not write are named beside the folder: `--phi {}`",
+                given.join("phi.npy").display()
+            )
+        }
         _ => "give a folder that `phicam run` or `phicam render` has written".to_owned(),
     }
 }

@@ -46,6 +46,7 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
                     surface.name
                 ),
                 match surface.shape {
+                    Shape::Sphere(_) => "move it out of sight, or put an occluder between",
                     Shape::Instance(_) => {
                         "move the camera behind it or out of sight, turn the mesh (`flip = true` exchanges front and back), or put an occluder between"
                     }

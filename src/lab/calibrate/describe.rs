@@ -17,8 +17,11 @@ pub(super) use directions::untold;
 
 /// Below this probability of so bad a fit the model lacks something.
 const SIGNIFICANCE: f64 = super::LEVEL;
-/// An estimate farther from the scene than this, in what was known beforehand, is told.
+/// An estimate farther from the scene than this, in the scatter that what was known beforehand lets
+/// expect, is told.
 const FAR: f64 = 3.0;
+/// Of a prior's variance what is always counted as told: an error is known to no better.
+const LEAST: f64 = 0.01;
 /// Errors by other pictures are told from so many times those by the likeliest.
 const MORE: f64 = 1.5;
 /// What a finer rule moves is told from this part of the error on.
@@ -239,8 +242,12 @@ impl Calibration {
         notes.extend([self.searched(), self.picture()]);
         let far = self.geometry().filter_map(|f| {
             let prior = f.prior?;
-            (f.value.abs() > FAR * prior)
-                .then(|| format!("{} ({} σ)", f.name, figure(f.value.abs() / prior, 2)))
+            // The estimate is drawn to 0: its expected scatter is √(prior² − error²).
+            let scatter = (prior * prior - f.by_curvature * f.by_curvature)
+                .max(LEAST * prior * prior)
+                .sqrt();
+            (f.value.abs() > FAR * scatter)
+                .then(|| format!("{} ({} σ)", f.name, figure(f.value.abs() / scatter, 2)))
         });
         let far: Vec<String> = far.collect();
         if !far.is_empty() {
