@@ -70,6 +70,11 @@ impl Calibration {
         self.found.iter().filter(|f| !f.unit.is_empty())
     }
 
+    /// Gains of frames.
+    fn gains(&self) -> impl Iterator<Item = &Calibrated> {
+        self.found.iter().filter(|f| f.unit.is_empty())
+    }
+
     /// What neither model nor stated noise explains, of what other light leaves.
     fn unexplained(&self) -> f64 {
         let by_noise = if self.p.is_some() {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::deviation::{Derivatives, Deviation};
 use super::followed::followed;
-use super::picture::PictureFit;
+use super::picture::{PictureFit, TOLD_APART};
 use crate::lab::certainty::Errors;
 use crate::lab::eliminated::Eliminated;
 use crate::lab::evidence::{Evidence, Test};
@@ -16,8 +16,6 @@ use crate::num::statistics::sidak_threshold;
 
 /// Causes that are followed.
 const FOLLOWED: usize = 4;
-/// Level at which a cause is told from the most likely one.
-const TOLD_APART: f64 = 0.01;
 
 /// What χ² says of the model.
 #[derive(Clone, Copy)]

@@ -18,8 +18,8 @@ use crate::num::quadratic::{Bounds, BoxSolution, box_least_squares};
 use crate::num::statistics::chi_square_sf;
 use crate::scene::Scene;
 
-/// Level at which one cause is told to miss what the other explains.
-const TOLD_APART: f64 = 0.01;
+/// Level at which one cause is told to miss what another explains.
+pub(super) const TOLD_APART: f64 = 0.01;
 
 /// Entries times squared elements, beyond which a verdict would wait for seconds.
 const MOST: f64 = 1e10;
@@ -130,22 +130,18 @@ impl ElementLight {
             root => change[p + l * roots.nrows()] / root,
         });
         let left = &d - &light * &solution;
-        let misses = match best {
-            Some(_) => missed(
-                &light.select_columns(&free),
-                &(b - &light * &solution),
-                &left,
-            )?,
-            None => 0.0,
-        };
-        let is_missed = match best {
+        let (misses, is_missed) = match best {
             Some(_) => {
+                let apart = b - &light * &solution;
                 let of_best = &d - b;
                 let after = &of_best - &light * solve(&of_best)?.solution;
                 let more = of_best.norm_squared() - after.norm_squared();
-                chi_square_sf(more, elements as f64) < TOLD_APART
+                (
+                    missed(&light.select_columns(&free), &apart, &left)?,
+                    chi_square_sf(more, elements as f64) < TOLD_APART,
+                )
             }
-            None => true,
+            None => (0.0, true),
         };
         let own = (dof - free.len() as f64).max(1.0);
         Some(PictureFit {

@@ -10,7 +10,7 @@ use crate::recovery::Deviations;
 impl Calibration {
     /// What is said where they are larger.
     pub(super) fn gains_beyond(&self) -> Option<String> {
-        let gains: Vec<&Calibrated> = self.found.iter().filter(|f| f.unit.is_empty()).collect();
+        let gains: Vec<&Calibrated> = self.gains().collect();
         let known_to = gains.first()?.prior?;
         let of = |each: fn(&Calibrated) -> f64| {
             DVector::from_iterator(gains.len(), gains.iter().map(|g| each(g)))
@@ -23,10 +23,7 @@ impl Calibration {
             picture_given: false,
         };
         let p = deviations.probability().filter(|p| *p < FIT_LEVEL)?;
-        let size = |g: &Calibrated| g.value.abs();
-        let largest = gains
-            .iter()
-            .reduce(|a, b| if size(b) > size(a) { b } else { a })?;
+        let largest = gains[deviations.size.iamax()];
         Some(format!(
             "Beware: the gains of the frames are LARGER than the {} % that was known beforehand (P {}; {} {} %): errors \
              of the geometry are too small. Give a larger --frame-gain, or leave frames out that are off otherwise \

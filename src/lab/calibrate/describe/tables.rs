@@ -7,9 +7,7 @@ use crate::lab::finding::{
 
 impl Calibration {
     pub(super) fn table(&self) -> Table {
-        let rows = self
-            .geometry()
-            .chain(self.found.iter().filter(|f| f.unit.is_empty()));
+        let rows = self.geometry().chain(self.gains());
         Table {
             caption: "From what the scene says, and its errors".to_owned(),
             file: Some("calibration.csv".to_owned()),
