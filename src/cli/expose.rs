@@ -17,6 +17,7 @@ use super::run_folder::{EXPOSED, PHI, RunFolder, SATURATED, STDERR};
 use crate::jobs::need;
 use crate::lab::{Errors, describe_exposure};
 use crate::matrix::Matrix;
+use crate::num::digits::figure;
 use crate::report;
 use crate::scene::{Glare, Quantity, Scene, SensorModel, SensorSettings, Spread};
 use crate::sensor::{
@@ -244,9 +245,9 @@ fn remark(result: &Summary, strict: bool, console: Console) -> Result<(), Failur
 fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
     if result.pedestal > 0.1 * exposed.stderr.mean() {
         console.say(format!(
-            "warning: {:.2e} W of dark current and ambient light stay in every entry; subtract --dark-frames, \
+            "warning: {} W of dark current and ambient light stay in every entry; subtract --dark-frames, \
              or recover with --background",
-            result.pedestal
+            figure(result.pedestal, 3)
         ));
     }
     if Errors::of_common(result.common, exposed.flux.ncols()) != Errors::Independent {

@@ -275,9 +275,15 @@ fn summary(account: &ImportAccount, has_noise: bool, dir: &Path) -> String {
             );
         }
         (Some(noise), None) => {
+            // What repeats tell is that of the mean, whatever its channels share.
+            let of = if account.channel == Some(ChannelName::Mean) {
+                ", of one channel; that of the three is taken for independent, and repeats tell whether it is"
+            } else {
+                ""
+            };
             let _ = writeln!(
                 text,
-                "  noise, as given: gain {} counts, read noise {} counts",
+                "  noise, as given: gain {} counts, read noise {} counts{of}",
                 noise.gain,
                 noise.read_variance.sqrt()
             );

@@ -15,7 +15,7 @@ use super::recovered::{collect, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
 use crate::folder::{Origin, Record};
-use crate::lab::{Certainty, RecoveredObject, by_trust};
+use crate::lab::{Certainty, RecoveredObject, by_trust, unmodelled};
 use crate::recovery::Method;
 use crate::store::digest;
 use request::RecoveryRequest;
@@ -63,6 +63,13 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     } else {
         scene.clone()
     };
+    let beside = unmodelled(&modelled);
+    if !beside.is_empty() {
+        console.say(format!(
+            "warning: the scene has light that the model of a recovery does not, and that it takes for the picture's: {}",
+            beside.join("; ")
+        ));
+    }
     let methods = methods(recover_memory::elements(args, &modelled));
     let own = record.as_ref().filter(|_| has_own_errors(args, dir));
     let gains = own.map(|record| with_gains(args, &record.origin, &methods, console));

@@ -46,6 +46,7 @@
 //! (`tests/physics/calibrated_past.rs`). Where the plate cuts off the beam of a spot without a size
 //! its place has no slope, and the search may not end.
 
+mod beforehand;
 mod calibration;
 mod common;
 mod descent;
@@ -64,6 +65,7 @@ mod rule;
 #[cfg(test)]
 mod tests;
 
+pub use beforehand::Beforehand;
 pub use calibration::{Calibrated, Calibration, Starts};
 pub use descent::Stage;
 pub use elements::FinerElements;

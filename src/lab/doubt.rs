@@ -46,6 +46,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         overstated(judged),
         impossible(found),
         undetermined(found, judged),
+        unit_untold(found),
         unseen(found, judged),
         uneven(found),
         alike_untold(found, judged),
@@ -100,8 +101,7 @@ fn unjudged(found: &Recovered, judged: &Judged) -> Option<String> {
 /// Most elements of a method without bounds where no surface is.
 fn impossible(found: &Recovered) -> Option<String> {
     let bounded = [Method::Joint, Method::JointTv, Method::JointTwoValued];
-    let free = found.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
-    if free || bounded.contains(&found.method) {
+    if found.has_free_scale() || bounded.contains(&found.method) {
         return None;
     }
     let values = found.reflectance.iter().enumerate();
@@ -116,6 +116,34 @@ fn impossible(found: &Recovered) -> Option<String> {
              reflects so. Check that Φcam is in W; use joint, which keeps to 0 to 1"
         )
     })
+}
+
+/// A free scale of which it is not certain which element is the brightest, the unit.
+fn unit_untold(found: &Recovered) -> Option<String> {
+    let errors = found.standard_error.as_ref()?;
+    let unit = found.reflectance.imax();
+    // Where that is so the errors are those of ratios to it, and it has none.
+    if !found.has_free_scale() || errors[unit] > 0.0 {
+        return None;
+    }
+    let below = |j: usize| 1.0 - found.reflectance[j];
+    let others = (0..errors.len()).filter(|j| *j != unit && below(*j) < BEYOND * errors[*j]);
+    let nearest = others.clone().min_by(|a, b| {
+        let [a, b] = [a, b].map(|j| below(*j) / errors[*j]);
+        a.total_cmp(&b)
+    })?;
+    Some(format!(
+        "the UNIT IS NOT CERTAIN: the scale is free, so that the brightest element is 1, and {} may be \
+         brighter (element {nearest}: {} ± {} of it). Errors are those of ratios to element {unit}; against \
+         the truly brightest all are off together by as much. Give the scale, compare ratios, or believe the \
+         errors of joint-gp",
+        match others.count() {
+            1 => "another one".to_owned(),
+            n => format!("{n} others"),
+        },
+        figure(found.reflectance[nearest], 3),
+        figure(errors[nearest], 2)
+    ))
 }
 
 /// Most elements known no better than that a surface reflects between 0 and 1.
@@ -148,9 +176,12 @@ fn on_bounds(found: &Recovered) -> Option<String> {
 /// Bands that were asked for and are not there.
 fn without_bands(found: &Recovered) -> Option<String> {
     let why = found.no_bands?;
-    Some(format!(
-        "it {why}. Ask for those of joint, or of joint-unbounded where it drops no direction"
-    ))
+    let cure = if found.has_free_scale() {
+        "joint-gp, whose errors know that the scale is free"
+    } else {
+        "joint, or of joint-unbounded where it drops no direction"
+    };
+    Some(format!("it {why}. Ask for those of {cure}"))
 }
 
 /// Probabilities of patterns that the sampling did not settle.

@@ -229,8 +229,8 @@ pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
 pub use calibrate::{
-    Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free, Identified, Profile,
-    Stage, Starts,
+    Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
+    Identified, Profile, Stage, Starts,
 };
 pub use certainty::{Certainty, Errors, PooledFrom};
 pub use chosen::{Beside, Chosen};
@@ -281,4 +281,5 @@ pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
 pub use unexplained::{Photographs, Unexplained, fewer};
+pub use unmodelled::unmodelled;
 pub use validation::{Against, Integration, Validation, validate};

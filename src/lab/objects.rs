@@ -16,6 +16,7 @@ use super::problem::problem;
 use super::refined::Refined;
 use super::study::Work;
 use crate::matrix::Matrix;
+use crate::metrics::rmse as rmse_of;
 use crate::model::MatrixModel;
 use crate::num::control::{Control, share_of};
 use crate::recovery::{
@@ -244,6 +245,13 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
     // The bias of one element is of the truth of all.
     let known = model.grids.iter().all(|grid| grid.is_known);
     let bias = found.bias(&model.albedo).filter(|_| known);
+    // Of a free scale both are in units of the brightest element.
+    let brightest = model.albedo.iter().copied().fold(0.0, f64::max);
+    let unit = if found.has_free_scale() {
+        Some(brightest).filter(|x| known && *x > 0.0)
+    } else {
+        Some(1.0)
+    };
     let warnings = doubts(found, judged);
     let explains = judged.fit.as_ref().is_none_or(|fit| fit.fits);
     let cut = |grid: &crate::model::ElementGrid| {
@@ -251,6 +259,13 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
         let truth = grid.is_known.then(|| model.albedo[range.clone()].to_vec());
         let scores = truth.as_ref().map(|t| Measures::of(&reflectance, t));
+        let rmse = truth.as_ref().zip(unit);
+        let rmse = rmse.and_then(|(truth, unit)| {
+            rmse_of(
+                &reflectance,
+                &truth.iter().map(|t| t / unit).collect::<Vec<_>>(),
+            )
+        });
         let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
         RecoveredObject {
             surface: grid.surface.clone(),
@@ -259,7 +274,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             mtf_raw: scores.and_then(|s| s.mtf_raw),
             mtf_normalized: scores.and_then(|s| s.mtf_normalized),
             correlation: scores.and_then(|s| s.correlation),
-            rmse: scores.and_then(|s| s.rmse),
+            rmse,
             parameter: words(found, explains),
             choice: Chosen::of(found),
             solver: found.solver.clone(),

@@ -12,7 +12,7 @@ const ACROSS: usize = 9;
 
 /// What of it `scene` has, in words, none where it has none: of up to its largest number of
 /// bounces.
-pub(super) fn unmodelled(scene: &Scene) -> Vec<String> {
+pub fn unmodelled(scene: &Scene) -> Vec<String> {
     let mut found: Vec<String> = scene
         .warnings()
         .iter()

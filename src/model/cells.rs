@@ -49,6 +49,11 @@ impl HiddenCell {
     }
 }
 
+/// The middles of cells, each with its area/π.
+pub(super) fn middles(cells: &[HiddenCell]) -> Vec<(HiddenPoint, f64)> {
+    cells.iter().map(|cell| (cell.point, cell.area)).collect()
+}
+
 /// The last h bits of a number in reverse order, every other one flipped, in the middle of the 2^h
 /// steps from 0 to 1. Over the 2^h numbers at x in such steps Σ (x − ½)(spread − ½) is 0 for even h
 /// and ⅛ for odd, where it would be h/8 with no bit flipped: viewpoints do not lean with the place.

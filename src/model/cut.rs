@@ -150,13 +150,7 @@ impl<'a> Cut<'a> {
         for chunk in hidden.chunks(CHUNK) {
             let points = HiddenPoints::new(chunk);
             let sides = |walls: &[Vec<WallPoint>]| {
-                let mut sums = Matrix::zeros(chunk.len(), walls.len());
-                for (sums, walls) in sums.as_mut_slice().chunks_mut(chunk.len()).zip(walls) {
-                    for wall in walls {
-                        wall.add_towards(scene, kernel, &points, sums);
-                    }
-                }
-                sums
+                wall_point::sides((scene, kernel), &points, walls.iter().map(|w| w.iter()))
             };
             let mut laser = if scene.laser.is_shining() {
                 Matrix::from_fn(chunk.len(), lit.len(), |q, l| {

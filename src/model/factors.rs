@@ -4,17 +4,17 @@ mod own;
 
 use rayon::prelude::*;
 
-use super::cells::{HiddenCell, cells_of_elements};
+use super::cells::{HiddenCell, cells_of_elements, middles};
 use super::cut::Cut;
 use super::divided;
 use super::effort::Effort;
 use super::error::ModelError;
 use super::extent::Extent;
-use super::kernel::Kernel;
+use super::kernel::{HiddenPoints, Kernel};
 use super::occlusion::{Both, Obstructed};
 use super::terms::{NEGLIGIBLE, NEGLIGIBLE_SMOOTH, Terms, averaged, compressed};
 use super::visible::DEVIATIONS;
-use super::wall_point::WallPoint;
+use super::wall_point::{self, WallPoint};
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, Surface};
@@ -248,7 +248,7 @@ impl Past<'_> {
     /// Of the element that these cells make up.
     fn own(&self, cells: &[HiddenCell]) -> Result<Own, ModelError> {
         let (pixels, spots) = (self.occlusion.pixels(), self.occlusion.spots());
-        let camera: Vec<Vec<Both>> = cells.iter().map(|c| self.occlusion.camera(c)).collect();
+        let camera = self.occlusion.camera(cells);
         let of_spot = |l| self.occlusion.laser_and_viewpoints(l, cells);
         let laser: Vec<Vec<[f64; 3]>> = (0..spots).map(of_spot).collect();
         let add = |[a, b]: Both, [x, y]: Both| [a + x, b + y];
@@ -261,13 +261,10 @@ impl Past<'_> {
             let each = laser[l].iter().map(|[all, left, _]| [*all, *left]);
             each.fold([0.0; 2], add)
         };
-        let each = cells.iter().zip(&camera);
-        let ratio: Vec<Vec<f64>> = each
-            .map(|(cell, seen)| self.by_rule(cell, &unobstructed(seen)))
-            .collect();
+        let ratio = self.by_rule(cells, &unobstructed(&camera, pixels));
         let c = [0, 1].map(|which: usize| {
             Matrix::from_fn(pixels, cells.len(), |p, q| {
-                ratio[q][p] * camera[q][p][which]
+                ratio[(q, p)] * camera[q][p][which]
             })
         });
         let d = [1, 2]
@@ -288,21 +285,24 @@ impl Past<'_> {
         })
     }
 
-    /// Of each pixel what its rule gives of a cell over what that sends to the middles of its
-    /// parts: where nothing hides a footprint its rule holds, not its middle.
-    pub(super) fn by_rule(&self, cell: &HiddenCell, by_middles: &[f64]) -> Vec<f64> {
-        let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point);
-        let ratio = |(footprint, by_middles): (&Vec<WallPoint>, &f64)| match *by_middles {
+    /// What the rule of each pixel gives of each cell over what that sends to the middles of the
+    /// pixel's parts, both cells × pixels: where nothing hides a footprint its rule holds, not its
+    /// middle.
+    pub(super) fn by_rule(&self, cells: &[HiddenCell], by_middles: &Matrix) -> Matrix {
+        let middles = middles(cells);
+        let rules = self.footprints.iter().map(|rule| rule.iter());
+        let points = HiddenPoints::new(&middles);
+        let by_rule = wall_point::sides((self.scene, self.kernel), &points, rules);
+        by_rule.zip_map(by_middles, |rule, middles| match middles {
             0.0 => 1.0,
-            by_middles => footprint.iter().map(towards).sum::<f64>() / by_middles,
-        };
-        self.footprints.iter().zip(by_middles).map(ratio).collect()
+            middles => rule / middles,
+        })
     }
 }
 
-/// What a cell sends with nothing in the way, of what it sends to each pixel.
-pub(super) fn unobstructed(seen: &[Both]) -> Vec<f64> {
-    seen.iter().map(|[all, _]| *all).collect()
+/// What each cell sends with nothing in the way, cells × pixels, of what it sends to each pixel.
+pub(super) fn unobstructed(seen: &[Vec<Both>], pixels: usize) -> Matrix {
+    Matrix::from_fn(seen.len(), pixels, |q, p| seen[q][p][0])
 }
 
 impl Settled<'_> {

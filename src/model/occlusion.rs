@@ -14,13 +14,14 @@
 
 use super::beam::{Lit, reached};
 use super::blocks::Blocks;
-use super::cells::HiddenCell;
+use super::cells::{HiddenCell, middles};
 use super::cut::exitance;
-use super::kernel::{HiddenPoint, Kernel};
+use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
 use super::parts::footprint_parts;
 use super::patch::{Patch, triangles};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{Blockers, DVec3, Hidden, Opaque, Pieces, Ray, ShapeId, area_and_middle};
+use crate::matrix::Matrix;
 use crate::scene::Scene;
 
 /// Light with nothing in the way, and past what is.
@@ -103,12 +104,18 @@ impl<'a> Obstructed<'a> {
         if self.by_rays() { 8e6 } else { 1e8 }
     }
 
-    /// What a cell sends to each pixel, by its middle, past what hides the wall from its viewpoint:
-    /// c_p.
-    pub(super) fn camera(&self, cell: &HiddenCell) -> Vec<Both> {
+    /// What each cell sends to each pixel, by its middle, past what hides the wall from its
+    /// viewpoint: c_p.
+    pub(super) fn camera(&self, cells: &[HiddenCell]) -> Vec<Vec<Both>> {
+        let all = self.unobstructed(cells);
+        let each = cells.iter().zip(all.row_iter());
+        each.map(|(cell, all)| self.past(cell, all.iter().map(|all| [*all; 2]).collect()))
+            .collect()
+    }
+
+    /// Takes what is hidden from `found`, all that a cell sends to each pixel.
+    fn past(&self, cell: &HiddenCell, mut found: Vec<Both>) -> Vec<Both> {
         let hidden = self.hidden_from(cell);
-        let all = self.unobstructed(cell).into_iter();
-        let mut found: Vec<Both> = all.map(|all| [all, all]).collect();
         let mut pieces = Pieces::default();
         self.blocks.visit(&hidden, &mut |p, met| {
             found[p][1] = match met {
@@ -123,11 +130,14 @@ impl<'a> Obstructed<'a> {
         found
     }
 
-    /// What a cell sends to each pixel with nothing in the way, to the middles of its parts.
-    pub(super) fn unobstructed(&self, cell: &HiddenCell) -> Vec<f64> {
-        let light = |p: &Patch| p.whole.towards(self.scene, self.kernel, &cell.point);
-        let whole = |patches: &Vec<Patch>| patches.iter().map(light).sum();
-        self.pixels.iter().map(whole).collect()
+    /// What each cell sends to each pixel with nothing in the way, to the middles of its parts,
+    /// cells × pixels.
+    pub(super) fn unobstructed(&self, cells: &[HiddenCell]) -> Matrix {
+        let middles = middles(cells);
+        let parts = self.pixels.iter();
+        let parts = parts.map(|patches| patches.iter().map(|patch| &patch.whole));
+        let points = HiddenPoints::new(&middles);
+        wall_point::sides((self.scene, self.kernel), &points, parts)
     }
 
     /// What hides the wall from the viewpoint of a cell.

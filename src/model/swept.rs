@@ -93,25 +93,25 @@ fn own_rates(
         2 * n
     };
     let light: Vec<Vec<Both>> = if terms > n || !sweep.is_still {
-        cells.iter().map(|cell| occlusion.camera(cell)).collect()
+        occlusion.camera(cells)
     } else {
         Vec::new()
     };
-    let by_middles: Vec<Vec<f64>> = if light.is_empty() {
-        cells.iter().map(|c| occlusion.unobstructed(c)).collect()
+    let by_middles = if light.is_empty() {
+        occlusion.unobstructed(cells)
     } else {
-        light.iter().map(|seen| unobstructed(seen)).collect()
+        unobstructed(&light, pixels)
     };
-    let each = cells.iter().zip(&by_middles);
-    let ratio: Vec<Vec<f64>> = each.map(|(cell, own)| past.by_rule(cell, own)).collect();
+    let ratio = past.by_rule(cells, &by_middles);
     let still = |p: usize, q: usize| light.get(q).map_or(0.0, |own| own[p][1]);
     // How the ratio changes differs over an element by much less than the ratio: by its middle.
     let middle = n / 2;
+    let of_middle = |m: &Matrix| m.row(middle).iter().copied().collect::<Vec<f64>>();
     let of_ratio = match cells.get(middle) {
         Some(cell) => sweep.by_rule(
             cell,
             &past.footprints,
-            (&by_middles[middle], &ratio[middle]),
+            (&of_middle(&by_middles), &of_middle(&ratio)),
         ),
         None => Vec::new(),
     };
@@ -120,9 +120,9 @@ fn own_rates(
     let of = |lane: usize| {
         let c = Matrix::from_fn(pixels, terms, |p, q| {
             if q < n {
-                ratio[q][p] * camera[q][p][lane] + of_ratio[p][lane] * still(p, q)
+                ratio[(q, p)] * camera[q][p][lane] + of_ratio[p][lane] * still(p, q)
             } else {
-                ratio[q - n][p] * still(p, q - n)
+                ratio[(q - n, p)] * still(p, q - n)
             }
         });
         let d = Matrix::from_fn(terms, spots, |q, l| {

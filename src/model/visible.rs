@@ -33,6 +33,8 @@ pub struct Visible {
 
 /// Relative change of Φcam below which no finer cells are tried.
 const TARGET: f64 = 3e-4;
+/// Cells that one thread asks for at once.
+const TOGETHER: usize = 16;
 /// What is asked ray by ray scatters: a single entry's change may be small by luck, and its bound
 /// is at least so many times what the entries change on average (in 1e5 normal deviates one exceeds
 /// 4.4).
@@ -215,8 +217,8 @@ fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> Photographs 
     let mut added = [[zeros(), zeros()], [zeros(), zeros()]];
     for chunk in cells.chunks((HELD / (pixels + spots)).max(1)) {
         let camera: Vec<Vec<Both>> = chunk
-            .par_iter()
-            .map(|cell| occlusion.camera(cell))
+            .par_chunks(TOGETHER)
+            .flat_map_iter(|cells| occlusion.camera(cells))
             .collect();
         let laser: Vec<Vec<[f64; 3]>> = (0..spots)
             .into_par_iter()

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
 use crate::geometry::{DVec3, Interaction, Intersection, Ray, Shape, ShapeId};
+use crate::matrix::Matrix;
 use crate::scene::Scene;
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -90,6 +91,24 @@ impl WallPoint {
             surface: None,
         }
     }
+}
+
+/// What each of these groups of wall points sends to each hidden point, points × groups: Σ of
+/// weight times f_r times G.
+pub(super) fn sides<'w, G: Iterator<Item = &'w WallPoint>>(
+    (scene, kernel): (&Scene, Kernel),
+    hidden: &HiddenPoints<'_>,
+    groups: impl ExactSizeIterator<Item = G>,
+) -> Matrix {
+    let n = hidden.all.len();
+    let mut sums = Matrix::zeros(n, groups.len());
+    // At least one, or there are no chunks.
+    for (sums, group) in sums.as_mut_slice().chunks_mut(n.max(1)).zip(groups) {
+        for wall in group {
+            wall.add_towards(scene, kernel, hidden, sums);
+        }
+    }
+    sums
 }
 
 /// The wall point of pixel `pixel` behind (a, b) of its footprint, with the étendue of `share` of

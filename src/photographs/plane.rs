@@ -50,12 +50,13 @@ pub fn linearised(
     let colours = [Channel::Red, Channel::Green, Channel::Blue];
     let grey = samples.is_grey();
     let wanted = match chosen {
-        Chosen::One(channel) if grey => {
+        Chosen::One(channel) if samples.channels.len() == 1 => {
             return Err(refused(
                 format!("{name} is grey, and has no channel {channel:?}"),
                 "leave `channel` out",
             ));
         }
+        Chosen::One(channel) => vec![channel],
         _ if grey => vec![samples.channels[0]],
         Chosen::Grey => {
             return Err(refused(
@@ -63,7 +64,6 @@ pub fn linearised(
                 "choose `channel`: red, green, blue, mean, or all for one folder each",
             ));
         }
-        Chosen::One(channel) => vec![channel],
         Chosen::Mean => colours.to_vec(),
     };
     let pixels = samples.width * samples.height;
@@ -299,6 +299,13 @@ mod tests {
         let same = photo(&[7.0, 7.0, 7.0], 3);
         let grey = linearised("a", &same, Chosen::Grey, &Response::Linear, 255.0).unwrap();
         assert_eq!((grey.light[0], grey.rounding[0]), (7.0, 1.0 / 12.0));
+        // And has each of its channels, as a dark frame of zeros in colour.
+        let red = Chosen::One(Channel::Red);
+        let of_red = linearised("a", &same, red, &Response::Linear, 255.0).unwrap();
+        assert_eq!(of_red, grey);
+        let grey = photo(&[7.0], 1);
+        let error = linearised("a", &grey, red, &Response::Linear, 255.0).unwrap_err();
+        assert!(error.to_string().contains("is grey"), "{error}");
     }
 
     #[test]

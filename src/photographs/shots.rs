@@ -100,7 +100,12 @@ impl<'a> Shots<'a> {
     }
 
     /// One channel of a photograph as light.
-    fn plane(&self, name: &str, samples: &Samples) -> Result<Plane, PhotographError> {
+    fn plane(
+        &self,
+        name: &str,
+        samples: &Samples,
+        chosen: Chosen,
+    ) -> Result<Plane, PhotographError> {
         same_size(name, [samples.width, samples.height], self.size)?;
         if self.set.full_scale.is_none() {
             same_full_scale(name, samples.full_scale, self.full_scale)?;
@@ -122,7 +127,7 @@ impl<'a> Shots<'a> {
             }
         };
         let saturation = self.set.saturation.or(full_scale).unwrap_or(f64::INFINITY);
-        linearised(name, samples, self.chosen, &response, saturation)
+        linearised(name, samples, chosen, &response, saturation)
     }
 
     /// The mean of all photographs in `paths`.
@@ -141,7 +146,12 @@ impl<'a> Shots<'a> {
                 ));
             }
             for samples in reader.photographs(path)? {
-                let plane = self.plane(&name, &samples)?;
+                // A grey dark frame or flat field is that of every channel.
+                let chosen = match samples.channels.len() {
+                    1 => Chosen::Grey,
+                    _ => self.chosen,
+                };
+                let plane = self.plane(&name, &samples, chosen)?;
                 match &mut mean {
                     Some(mean) => mean.add(&name, &plane)?,
                     None => mean = Some(Averaged::of(plane)),
@@ -240,7 +250,7 @@ impl<'a> Shots<'a> {
         reader: &mut Reader<'_>,
         visit: impl FnMut(usize, &Take, Averaged) -> Result<(), PhotographError>,
     ) -> Result<(), PhotographError> {
-        let plane = |name: &str, samples: &Samples| self.plane(name, samples);
+        let plane = |name: &str, samples: &Samples| self.plane(name, samples, self.chosen);
         let repeats = self.set.repeats.map_or(1, |n| n as usize);
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }

@@ -138,7 +138,7 @@ pub(super) fn simultaneous_allowed<'a>(
     if problem.nuisance.free_scale {
         return refuse(
             "has no bands with a free scale",
-            "give the scale, or ask for the bands of joint-unbounded",
+            "give the scale, or ask for the bands of joint-gp",
         );
     }
     Ok(stderr)

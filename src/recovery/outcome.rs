@@ -223,7 +223,8 @@ impl Recovered {
         &self.reflectance * scale.unwrap_or(1.0)
     }
 
-    fn has_free_scale(&self) -> bool {
+    /// Whether the brightest element is the unit, because the scale is free.
+    pub fn has_free_scale(&self) -> bool {
         self.nuisance.as_ref().is_some_and(|n| n.scale.is_some())
     }
 

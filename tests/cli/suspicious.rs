@@ -126,3 +126,19 @@ fn built_in_scenes_are_lit() {
         }
     }
 }
+
+/// Light that the scene has and the model of a recovery does not is told before its picture.
+#[test]
+fn light_that_a_recovery_does_not_model_is_told() {
+    let workspace = Workspace::new();
+    for (bounces, told) in [("max_bounces = 3 ", false), ("max_bounces = 5 ", true)] {
+        let change = ("max_bounces = 3 ", bounces);
+        workspace.write("deep.toml", altered(&[TINY[0], TINY[1], change]));
+        let line = format!("render deep.toml -o {told} --samples 64");
+        let _ = workspace.phicam(&line).exits(0);
+        let ended = workspace.phicam(&format!("recover {told} --method pinv"));
+        let words = "the model of a recovery does not";
+        assert_eq!(ended.stderr.contains(words), told, "{}", ended.stderr);
+        assert_eq!(ended.stderr.contains("light of 4 to 5 bounces"), told);
+    }
+}

@@ -4,6 +4,7 @@
 //! exp(−½ ‖(Φ − C diag(s) D)/σ‖²). The pattern whose elements are light where P(s_j = 1 | Φ) > ½
 //! is expected to have the most elements right of all recoveries, thus the largest normalized MTF.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::counts::normal_numbers;
@@ -72,26 +73,32 @@ impl Board {
             (left * d.row(i).component_mul(&d.row(j)).transpose())[0]
         };
         let gram = Matrix::from_fn(n, n, |i, j| pair(i.min(j), i.max(j)));
-        let chi2 = |set: usize| {
-            let step = |j: usize| f64::from(u8::from(set >> j & 1 == 1)) - truth[j];
-            let changed: Vec<(usize, f64)> = (0..n)
-                .map(|j| (j, step(j)))
-                .filter(|(_, x)| *x != 0.0)
-                .collect();
-            let of = |&(i, x): &(usize, f64)| {
-                let own: f64 = changed.iter().map(|(j, y)| gram[(i, *j)] * y).sum();
-                x * (own - 2.0 * b[i])
-            };
-            changed.iter().map(of).sum::<f64>()
-        };
-        let all: Vec<f64> = (0..1 << n).map(chi2).collect();
+        // In Gray's order one element changes at a time, which changes χ² by δ (2 (G x)_j + δ G_jj −
+        // 2 b_j), x = s − s₀.
+        let mut x: Vec<f64> = truth.iter().map(|own| -own).collect();
+        let mut gx = &gram * DVector::from_column_slice(&x);
+        let mut own: f64 = (0..n).map(|j| x[j] * (gx[j] - 2.0 * b[j])).sum();
+        let mut all = vec![own; 1 << n];
+        let mut set = 0;
+        for step in 1usize..1 << n {
+            let j = step.trailing_zeros() as usize;
+            set ^= 1 << j;
+            let delta = if set >> j & 1 == 1 { 1.0 } else { -1.0 };
+            own += delta * (2.0 * gx[j] + delta * gram[(j, j)] - 2.0 * b[j]);
+            x[j] += delta;
+            gx.axpy(delta, &gram.column(j), 1.0);
+            all[set] = own;
+        }
         let least = all.iter().copied().fold(f64::INFINITY, f64::min);
         let (mut light, mut sum) = (vec![0.0; n], 0.0);
         for (set, chi2) in all.iter().enumerate() {
             let own = libm::exp(-0.5 * (chi2 - least));
-            sum += own;
-            let lit = (0..n).filter(|j| set >> j & 1 == 1);
-            lit.for_each(|j| light[j] += own);
+            // As many as there are change no bit of the sum.
+            if own > 1e-25 {
+                sum += own;
+                let lit = (0..n).filter(|j| set >> j & 1 == 1);
+                lit.for_each(|j| light[j] += own);
+            }
         }
         let lit = |p: &f64| f64::from(u8::from(*p > 0.5 * sum));
         light.iter().map(lit).collect()

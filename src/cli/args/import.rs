@@ -11,7 +11,7 @@ use crate::photographs::set::ChannelName;
 #[derive(Debug, Arguments)]
 #[command(
     after_help = "The list is TOML. Its keys: scene; frames (pattern or list), list (CSV: file, spot or x,y, exposure, gain, gain_error) or [[frame]] tables; repeats, dark, flat, \
-                  flat_dark, channel, variable, axes, exposure, gamma or response, full_scale, saturation, dead, halo, noise = { gain, read_noise }, watts, \
+                  flat_dark, channel, variable, axes, exposure, gamma or response, full_scale, saturation, dead, halo, noise = { gain, read_noise } (counts per electron, counts; `gain` of a scene's [sensor] is electrons per count, its inverse), watts, \
                   crop = { x, y, width, height }, [camera] (fx, fy, cx, cy, k1, k2, p1, p2, k3) and [[marks]] (pixel, wall).\n\
                   DIR then has phi.npy, phi.stderr.npy where the noise is known, left_out.npy (1 saturated, 2 dead, 4 halo of the spot, 8 outside the photograph, \
                   16 no photograph, added up; 0 where an entry counts), import.json and import.png."

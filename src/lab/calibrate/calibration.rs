@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Direction, FinerElements, Identified, Profile, Stage};
+use super::{Beforehand, Direction, FinerElements, Identified, Profile, Stage};
 use crate::lab::located::Grid;
 use crate::recovery::ErrorField;
 
@@ -64,6 +64,8 @@ pub struct Calibration {
     pub finer_elements: Option<FinerElements>,
     /// Combinations that the photographs alone do not tell.
     pub untold: Vec<Direction>,
+    /// The parameters together against what was known beforehand; absent where nothing was.
+    pub beforehand: Option<Beforehand>,
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.
     pub replicates: Option<u32>,

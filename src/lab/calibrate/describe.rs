@@ -1,7 +1,7 @@
 //! What is said of a calibration.
 
+mod beyond;
 mod directions;
-mod gains;
 mod picture;
 mod tables;
 
@@ -17,11 +17,6 @@ pub(super) use directions::untold;
 
 /// Below this probability of so bad a fit the model lacks something.
 const SIGNIFICANCE: f64 = super::LEVEL;
-/// An estimate farther from the scene than this, in the scatter that what was known beforehand lets
-/// expect, is told.
-const FAR: f64 = 3.0;
-/// Of a prior's variance what is always counted as told: an error is known to no better.
-const LEAST: f64 = 0.01;
 /// Errors by other pictures are told from so many times those by the likeliest.
 const MORE: f64 = 1.5;
 /// What a finer rule moves is told from this part of the error on.
@@ -154,6 +149,7 @@ impl Calibration {
                 } else if self.asks_for_elements()
                     || self.shared.is_some()
                     || self.neighbours.is_some()
+                    || self.is_beyond()
                     || !self.by_pictures().is_empty()
                 {
                     ""
@@ -245,23 +241,7 @@ impl Calibration {
         notes.extend(self.impossible());
         notes.push(self.elements());
         notes.extend([self.searched(), self.picture()]);
-        let far = self.geometry().filter_map(|f| {
-            let prior = f.prior?;
-            // The estimate is drawn to 0: its expected scatter is √(prior² − error²).
-            let scatter = (prior * prior - f.by_curvature * f.by_curvature)
-                .max(LEAST * prior * prior)
-                .sqrt();
-            (f.value.abs() > FAR * scatter)
-                .then(|| format!("{} ({} σ)", f.name, figure(f.value.abs() / scatter, 2)))
-        });
-        let far: Vec<String> = far.collect();
-        if !far.is_empty() {
-            notes.push(format!(
-                "Farther from the scene than what was known beforehand allows: {}. Either that was \
-                 stated too well, or the model lacks something.",
-                listed(&far)
-            ));
-        }
+        notes.extend(self.beyond());
         notes.extend(self.gains_beyond());
         let by_pictures = self.by_pictures();
         if !by_pictures.is_empty() {
@@ -326,6 +306,7 @@ impl Describe for Calibration {
                 true if self.is_coarse()
                     || self.asks_for_elements()
                     || self.shared.is_some()
+                    || self.is_beyond()
                     || self.impossible().is_some() =>
                 {
                     Tone::Plain

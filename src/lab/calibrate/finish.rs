@@ -5,8 +5,8 @@ use super::field::End;
 use super::geometry::Light;
 use super::left_out::Group;
 use super::{
-    Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
-    Starts, profile,
+    Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem,
+    Profile, Starts, profile,
 };
 use crate::lab::certainty::{Errors, correlated, fits_better};
 use crate::lab::error::LabError;
@@ -157,6 +157,7 @@ impl CalibrationPlan {
             is_integrated,
             finer_elements: elements,
             untold,
+            beforehand: Beforehand::of(problem, best, &covariance),
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),

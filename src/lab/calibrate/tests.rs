@@ -1,5 +1,6 @@
 //! The likelihood against a dense normal distribution, its slope against differences.
 
+mod beforehand;
 mod errors;
 mod estimates;
 mod pictures;
@@ -9,7 +10,7 @@ use nalgebra::DVector;
 use super::picture::{Prior, priors};
 use super::*;
 use crate::lab::certainty::{Certainty, Errors};
-use crate::lab::finding::Describe;
+use crate::lab::finding::{Describe, Tone};
 use crate::lab::pooled::tests::repeated;
 use crate::matrix::Matrix;
 use crate::model::Effort;

@@ -473,3 +473,42 @@ fn pictures_that_contradict_each_other_are_told() {
         assert_eq!(contested(&found), expected, "{ahead}");
     }
 }
+
+/// With a free scale the brightest of reflectances 0.9 and 0.85 is certain at little noise, and the
+/// picture is 0 off the truth in units of its brightest; at much noise that is told to be uncertain,
+/// of the unbounded recovery, whose errors are those of ratios to it.
+#[test]
+fn a_free_scales_uncertain_unit_is_told() {
+    let mut model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
+    model.albedo = vec![0.3, 0.9, 0.85, 0.2];
+    let nuisance = Nuisance {
+        free_scale: true,
+        ..Nuisance::default()
+    };
+    let exact = &model.camera_side
+        * Matrix::from_diagonal(&model.albedo.clone().into())
+        * &model.laser_side;
+    for (level, uncertain) in [(1e-5, false), (0.5, true)] {
+        let taken = Photographs::relative(&exact, level, 3);
+        let noise = Noise::StandardError(&taken.stderr, Certainty::STATED);
+        let methods = [Method::JointUnbounded, Method::JointGp];
+        let (options, control) = (Options::default(), Control::none());
+        let found = recover_objects(
+            &model,
+            &taken.phi,
+            noise,
+            nuisance.clone(),
+            &methods,
+            &options,
+            control,
+        );
+        let told = |k: usize| {
+            let object = &found[k].outcome.as_ref().unwrap()[0];
+            let unit = |w: &String| w.contains("UNIT IS NOT CERTAIN");
+            (object.warnings.iter().any(unit), object.rmse.unwrap())
+        };
+        assert_eq!(told(0).0, uncertain, "{found:?}");
+        assert!(!told(1).0, "{found:?}");
+        assert!(uncertain || told(0).1 < 1e-3, "{found:?}");
+    }
+}

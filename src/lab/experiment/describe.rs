@@ -7,6 +7,9 @@ use crate::lab::finding::{
 };
 use crate::num::digits::{figure, significant};
 
+/// Neighbouring settings of a larger ratio are named beside what is interpolated between them.
+const WIDE: f64 = 2.0;
+
 /// What of a setting a sweep varies.
 type Varied = fn(&Setting) -> f64;
 
@@ -63,6 +66,18 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
         ));
     }
     said.extend(spreads().map(|own| reach(found, own)));
+    if found.seeds > 1 {
+        let more = if (found.traced as u64) < found.seeds {
+            format!(", {} times in all", found.traced)
+        } else {
+            String::new()
+        };
+        said.push(format!(
+            "Each ± is the scatter of one reading over {} seeds: the sensor's noise, and the light traced anew{more}. \
+             Thresholds are those of the means.",
+            found.seeds
+        ));
+    }
     said
 }
 
@@ -113,7 +128,8 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
             "up to the glare over signal in brackets by".to_owned(),
             names(&|t| {
                 let glare = t.glare.filter(|g| *g < most)?;
-                Some(format!("{} ({})", name(t), two(glare)))
+                let far = far(t.glare_between, two);
+                Some(format!("{} ({}{far})", name(t), two(glare)))
             }),
         ),
         (
@@ -128,9 +144,20 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
     let exposures = limits().filter_map(|t| Some((t, t.exposure?)));
     let shortest = exposures.min_by(|a, b| a.1.total_cmp(&b.1));
     let exposure = match shortest {
+        // Shorter ones were not studied.
+        Some((t, exposure))
+            if t.exposure_between.is_none() && exposure <= found.shortest(spread) =>
+        {
+            format!(
+                "the {what} is readable in single frames of {} already, the shortest studied, by {}.",
+                prefixed(exposure, "s"),
+                name(t)
+            )
+        }
         Some((t, exposure)) => format!(
-            "the {what} is readable in single frames of at least {}, by {}.",
+            "the {what} is readable in single frames of at least {}{}, by {}.",
             prefixed(exposure, "s"),
+            far(t.exposure_between, |x| prefixed(x, "s")),
             name(t)
         ),
         None => "no exposure of single frames is long enough.".to_owned(),
@@ -140,6 +167,18 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
          with glare as strong as the signal, {exposure}",
         figure(found.readable(), 2)
     )
+}
+
+/// That a threshold is interpolated over a wide gap, and which.
+fn far(between: Option<[f64; 2]>, number: impl Fn(f64) -> String) -> String {
+    let wide = between.filter(|[low, high]| *high > WIDE * low);
+    wide.map_or(String::new(), |[low, high]| {
+        format!(
+            ", interpolated: studied at {} and {}",
+            number(low),
+            number(high)
+        )
+    })
 }
 
 fn modulation(reading: &Reading) -> String {
@@ -212,6 +251,12 @@ fn plots(settings: &[Setting], title: &str, x: Varied) -> Vec<Plot> {
 }
 
 impl Experiment {
+    /// The shortest exposure that was studied with this spread of the glare, s.
+    fn shortest(&self, spread: &str) -> f64 {
+        let own = self.by_exposure.iter().filter(|s| s.spread == spread);
+        own.map(|s| s.exposure).fold(f64::INFINITY, f64::min)
+    }
+
     fn limits(&self) -> Table {
         Table {
             caption: "Where each analysis reads the picture".to_owned(),

@@ -112,9 +112,14 @@ pub struct Threshold {
     /// [`Experiment::READABLE`] of the picture's own; none where the least glare of the study is
     /// too much.
     pub glare: Option<f64>,
+    /// The neighbouring settings between which that was interpolated; none where it is one that was
+    /// studied.
+    pub glare_between: Option<[f64; 2]>,
     /// Shortest exposure, s, from which on it stays there with glare as strong as the signal; none
     /// where no exposure of the study is enough.
     pub exposure: Option<f64>,
+    /// As of the glare.
+    pub exposure_between: Option<[f64; 2]>,
 }
 
 /// The study of a scene.
@@ -128,6 +133,8 @@ pub struct Experiment {
     pub sensor: String,
     /// Seeds of the sensor's noise.
     pub seeds: u64,
+    /// How often the light was traced, with seeds of its own.
+    pub traced: usize,
     /// Mean flux a pixel from the object, W.
     pub signal: f64,
     /// Normalized modulation of the true picture: 1 of a board, whose elements have two values.

@@ -49,9 +49,12 @@ pub(in crate::lab) const STUDY: Registered = Registered {
         .or("16")
         .within(1, 100_000),
         Opt::paths("samples", "Paths per pixel of the traced light").or("512"),
-        Opt::whole("seeds", "Draws of the sensor's noise")
-            .or("4")
-            .within(1, 100_000),
+        Opt::whole(
+            "seeds",
+            "Draws of the sensor's noise, each of the first 16 with light traced anew",
+        )
+        .or("4")
+        .within(1, 100_000),
         Opt::seed("Seed of the tracer and first one of the sensor"),
     ],
     prepare: |scene, values| {
@@ -81,11 +84,15 @@ pub struct ExperimentTasks {
     plan: ExperimentPlan,
 }
 
+/// Seeds of the sensor for which light is traced anew; further ones take the same in turn.
+const TRACED: u64 = 16;
+
 /// What every series is photographed and read with.
 pub struct Context {
     laboratory: Laboratory,
-    /// Flux from the object, pixels × spots, W.
-    signal: Matrix,
+    /// Flux from the object, pixels × spots, W: traced anew for each seed of the sensor, the first
+    /// [`TRACED`] of them.
+    signals: Vec<Matrix>,
     /// Flux that enters the lens straight from the spots, W, over all of them.
     direct: f64,
     patterns: [Pattern; 2],
@@ -99,7 +106,12 @@ impl ExperimentTasks {
     }
 
     fn series<'a>(&self, context: &'a Context) -> Vec<Series<'a>> {
-        series::all(&self.scene, &self.plan, &context.patterns, &context.signal)
+        series::all(
+            &self.scene,
+            &self.plan,
+            &context.patterns,
+            &context.signals[0],
+        )
     }
 }
 
@@ -123,24 +135,29 @@ impl Study for ExperimentTasks {
             MatrixModel::new(scene, Kernel::Published, None)?,
             [scene.camera.columns, scene.camera.rows],
         );
-        let trace = Plan {
-            estimator: Estimator::Shared,
-            sampling,
-            seed: plan.seed,
-            budget: Budget::new(plan.samples, sampling)?,
+        let budget = Budget::new(plan.samples, sampling)?;
+        let traced = |draw: u64| {
+            let trace = Plan {
+                estimator: Estimator::Shared,
+                sampling,
+                seed: plan.seed.wrapping_add(draw),
+                budget,
+            };
+            let signal = render(scene, &trace, 0..scene.laser.spots.len(), control)?.flux;
+            if signal.sum() <= 0.0 {
+                return Err(LabError::DARK_OBJECT);
+            }
+            Ok(signal)
         };
-        let spots = 0..scene.laser.spots.len();
-        let signal = render(scene, &trace, spots, control)?.flux;
-        if signal.sum() <= 0.0 {
-            return Err(LabError::DARK_OBJECT);
-        }
+        let signals = (0..plan.seeds.clamp(1, TRACED)).map(traced);
+        let signals = signals.collect::<Result<_, LabError>>()?;
         let direct: f64 = entering_lens(scene).iter().sum();
         if direct <= 0.0 {
             return Err(LabError::NO_GLARE);
         }
         Ok(Context {
             laboratory,
-            signal,
+            signals,
             direct,
             patterns: series::patterns(scene, plan),
         })
@@ -149,11 +166,15 @@ impl Study for ExperimentTasks {
     fn task(&self, context: &Context, index: usize, _: Control<'_>) -> Result<Seed, LabError> {
         let Self { scene, plan } = self;
         let seeds = plan.seeds as usize;
-        let seed = plan.seed.wrapping_add((index % seeds) as u64);
+        let draw = index % seeds;
+        let seed = plan.seed.wrapping_add(draw as u64);
         let series = &self.series(context)[index / seeds];
         let Context {
-            laboratory, signal, ..
+            laboratory,
+            signals,
+            ..
         } = context;
+        let signal = &signals[draw % signals.len()];
         series::read(scene, plan, laboratory, series, signal, seed)
     }
 
@@ -163,7 +184,7 @@ impl Study for ExperimentTasks {
 
     fn finish(&self, context: &Context, parts: Vec<Seed>) -> Result<Experiment, LabError> {
         let Self { scene, plan } = self;
-        let signal = &context.signal;
+        let signal = &context.signals[0];
         let series = self.series(context);
         let seeds = parts.chunks((plan.seeds as usize).max(1));
         let settings = series.iter().zip(seeds);
@@ -177,6 +198,7 @@ impl Study for ExperimentTasks {
             scene_hash: scene.hash.clone(),
             sensor: plan.sensor_name.clone(),
             seeds: plan.seeds,
+            traced: context.signals.len(),
             signal: signal.mean(),
             own_modulation: context.laboratory.own_modulation(),
             direct_over_signal: context.direct / signal.sum(),
@@ -236,10 +258,8 @@ mod tests {
     use crate::scene::SensorModel;
     use crate::sensor::Sensor;
 
-    #[test]
-    #[ignore = "slow"]
-    fn it_divides() {
-        let plan = ExperimentPlan {
+    fn plan() -> ExperimentPlan {
+        ExperimentPlan {
             sensor: Sensor::builtin(SensorModel::Ccd),
             sensor_name: "ccd".to_owned(),
             samples: 32,
@@ -249,8 +269,28 @@ mod tests {
             glares: vec![1.0],
             exposures: vec![0.1],
             falloff: 1.0,
-        };
-        let found = divides(&ExperimentTasks::new(&small("experiment"), plan));
+        }
+    }
+
+    #[test]
+    #[ignore = "slow"]
+    fn it_divides() {
+        let found = divides(&ExperimentTasks::new(&small("experiment"), plan()));
         assert_eq!([found.by_glare.len(), found.by_exposure.len()], [2, 2]);
+    }
+
+    /// Each seed reads light of its own: with that of the first it reads something else.
+    #[test]
+    fn light_is_traced_anew_for_each_seed() {
+        let tasks = ExperimentTasks::new(&small("experiment"), plan());
+        let mut context = tasks.context(Control::none()).unwrap();
+        let read = |context: &Context| {
+            let seed = tasks.task(context, 1, Control::none()).unwrap();
+            serde_json::to_string(&seed).unwrap()
+        };
+        let own = read(&context);
+        assert_eq!(context.signals.len(), 2);
+        context.signals[1] = context.signals[0].clone();
+        assert_ne!(own, read(&context));
     }
 }

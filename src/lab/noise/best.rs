@@ -20,6 +20,9 @@ pub struct Best {
     pub method: Option<String>,
     /// The level up to which it holds.
     pub level: Option<f64>,
+    /// From and to where the scatter of the draws may move that level
+    /// ([`NoiseCurve::held_within`]).
+    pub within: Option<[f64; 2]>,
     /// Whether it falls there.
     pub reach: Option<Reach>,
     /// Root mean square error at that level, over elements and draws; between two levels its square
@@ -62,6 +65,7 @@ pub(super) fn best(
         elements,
         method: found.map(|(c, ..)| c.method.clone()),
         level: found.map(|(_, held, ..)| held.level),
+        within: found.and_then(|(c, ..)| c.held_within),
         reach: found.map(|(_, held, ..)| held.reach),
         rmse: found.and_then(|f| f.2),
         rmse_over_bound: found.and_then(|f| f.3),
@@ -126,6 +130,7 @@ mod tests {
             lost_raw: [Lost::Unknown; LIMITS.len()],
             lost_normalized: [Lost::Unknown; LIMITS.len()],
             held: held.map(|(level, reach)| Held { level, reach }),
+            held_within: None,
         }
     }
 

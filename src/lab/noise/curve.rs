@@ -78,6 +78,9 @@ impl Point {
     }
 }
 
+/// Standard errors of a mean on either side that hold it in 95 of 100.
+const SURELY: f64 = 1.96;
+
 /// Where a mean modulation falls to a limit, coming from the quiet end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -142,6 +145,10 @@ pub struct NoiseCurve {
     /// above 2 − m, relative to the picture's own; there dark would come out too dark. None where
     /// it is not there at the quietest.
     pub held: Option<Held>,
+    /// The same with all means lower, and higher, by 1.96 of their standard errors: from and to
+    /// where the scatter of the draws may move it. None of one draw; where lower means do not hold
+    /// it at all, the quietest level.
+    pub held_within: Option<[f64; 2]>,
 }
 
 impl NoiseCurve {
@@ -181,6 +188,23 @@ impl NoiseCurve {
             .iter()
             .map(|p| known(p, p.mtf_normalized, full[1]))
             .collect();
+        let shifted = |sign: f64| -> Option<Vec<(f64, Option<f64>)>> {
+            let each = points.iter().zip(&raw);
+            let each = each.map(|(p, (level, mean))| {
+                let error = p.mtf_raw?.stderr? * sign * SURELY / full[0];
+                // A mean that is to be trusted stays so.
+                let most = mean.map(|m| m.max(2.0 - LIMITS[0]));
+                Some((*level, mean.map(|m| (m + error).min(most.unwrap_or(m)))))
+            });
+            each.collect()
+        };
+        let limit_of = |means: Vec<_>| held(&means, LIMITS[0], &plan.axis).map(|h| h.level);
+        let held_within = shifted(-1.0).zip(shifted(1.0)).and_then(|(low, high)| {
+            Some([
+                limit_of(low).or(plan.levels.first().copied())?,
+                limit_of(high)?,
+            ])
+        });
         let lost = |means: &[_]| LIMITS.map(|limit| lost(means, limit, &plan.axis));
         Self {
             picture,
@@ -189,6 +213,7 @@ impl NoiseCurve {
             lost_raw: lost(&raw),
             lost_normalized: lost(&normalized),
             held: held(&raw, LIMITS[0], &plan.axis),
+            held_within,
             mtf_of_truth: full,
             points,
         }

@@ -121,8 +121,18 @@ impl NoiseStudy {
                     (Some(Reach::AtLeast), true) => "at most ",
                     _ => "",
                 };
+                let within = b.within.filter(|[from, to]| from != to);
+                let within = within.map_or(String::new(), |[from, to]| {
+                    let draws = self.curves.iter().flat_map(|c| &c.points);
+                    let draws = draws.map(|p| p.draws).max().unwrap_or(0);
+                    format!(
+                        ", {} to {} by the scatter of {draws} draws",
+                        figure(from, 2),
+                        figure(to, 2)
+                    )
+                });
                 format!(
-                    "{object}: {sign}{} by {method}{published}",
+                    "{object}: {sign}{} by {method}{within}{published}",
                     figure(level, 2)
                 )
             }

@@ -292,6 +292,14 @@ fn a_mean_that_strays_has_not_fallen() {
     };
     assert!((level / 0.1 / libm::exp10(1.0 / 8.0) - 1.0).abs() < 1e-12);
     assert_eq!(fallen.lost_normalized, [Lost::Before; 2]);
+    // The mean 0.2 is known to √(0.005/3/4): 1.96 of that lower and higher, by hand.
+    let off = 1.96 * (0.005f64 / 12.0).sqrt();
+    let [from, to] = fallen.held_within.unwrap();
+    for (level, mean) in [(from, 0.2 - off), (to, 0.2 + off)] {
+        let want = 0.1 * libm::exp10(0.1 / (1.0 - mean));
+        assert!((level / want - 1.0).abs() < 1e-12, "{level} {want}");
+    }
+    assert!(from < level && level < to);
 }
 
 /// With photons the modulation rises: from 0.8 at 1e4 to 1 at 1e5, so from their geometric mean on

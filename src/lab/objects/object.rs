@@ -27,7 +27,8 @@ pub struct RecoveredObject {
     pub mtf_normalized: Option<f64>,
     /// Pearson correlation with the truth.
     pub correlation: Option<f64>,
-    /// Root mean square error against the truth.
+    /// Root mean square error against the truth; with a free scale both in units of their brightest
+    /// element.
     pub rmse: Option<f64>,
     /// Parameter used and why, in words.
     pub parameter: String,

@@ -36,7 +36,7 @@ fn past(scene: &Scene) -> Obstructed<'_> {
 /// Light of all pairs, pixels and spots by cells.
 fn light(scene: &Scene, cells: &[HiddenCell]) -> Vec<f64> {
     let past = past(scene);
-    let camera = cells.iter().flat_map(|cell| past.camera(cell));
+    let camera = past.camera(cells).into_iter().flatten();
     let laser = (0..past.spots()).flat_map(|l| past.laser(l, cells));
     let scale = [1.0 / camera_scale(scene), 1.0];
     let of = |k: usize| move |both: [f64; 2]| both[1] * scale[k];

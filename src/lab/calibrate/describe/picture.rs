@@ -62,7 +62,11 @@ impl Calibration {
         let scale = if self.scale == 1.0 {
             String::new()
         } else {
-            format!(" The scale of all light is {}.", figure(self.scale, 4))
+            format!(
+                " The scale of all light is {} if the mean of the picture is of the size that its prior takes: \
+                 that is no measurement of the scale, and of reflectances only the ratios are told.",
+                figure(self.scale, 3)
+            )
         };
         let length = if self.length == 0.0 {
             "elements that know nothing of each other".to_owned()

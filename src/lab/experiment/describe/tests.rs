@@ -43,6 +43,7 @@ fn the_findings_are_told_in_words() {
         scene_hash: String::new(),
         sensor: "ccd".to_owned(),
         seeds: 1,
+        traced: 1,
         signal: 3e-14,
         direct_over_signal: 50.0,
         thresholds: super::super::limits::thresholds(&by_glare, &by_glare, 0.5),
@@ -59,6 +60,10 @@ fn the_findings_are_told_in_words() {
     assert!(found.words[3].contains(
         "1.0 times the signal, by `joint`; not even at the least glare studied by `published`;"
     ));
+    assert!(
+        found.words[3]
+            .ends_with("single frames of 20 ms already, the shortest studied, by `joint`.")
+    );
     let said = found.describe();
     assert!(said.sentence.ends_with("0.90.") && said.notes.len() == 2);
     let file = said.tables.iter().find(|t| t.file.is_some()).unwrap();
@@ -80,6 +85,7 @@ fn a_picture_of_many_values_is_measured_by_its_own() {
         scene_hash: String::new(),
         sensor: "ccd".to_owned(),
         seeds: 1,
+        traced: 1,
         signal: 3e-14,
         own_modulation,
         direct_over_signal: 50.0,
@@ -96,4 +102,50 @@ fn a_picture_of_many_values_is_measured_by_its_own() {
         "the picture is readable (normalized modulation 0.30 and more, half of its own)"
     ));
     assert!(reach.contains("1.0 times the signal, by `published`, `joint`;"));
+}
+
+/// A threshold between settings that are far apart is told with them, and so is what ± is of.
+#[test]
+fn what_is_interpolated_is_told() {
+    let by_glare = vec![setting(1.0, 0.75), setting(100.0, 0.25)];
+    let short = |share: f64, mean: f64| Setting {
+        exposure: share,
+        ..setting(1.0, mean)
+    };
+    let mut by_exposure = vec![short(0.01, 0.25), short(1.0, 0.75)];
+    for (own, mean) in by_exposure.iter_mut().zip([0.1, 0.2]) {
+        own.readings[1].mtf_normalized = Spread::of(&[mean]);
+    }
+    let mut found = Experiment {
+        scene: "bench".to_owned(),
+        scene_hash: String::new(),
+        sensor: "ccd".to_owned(),
+        seeds: 20,
+        traced: 16,
+        signal: 3e-14,
+        own_modulation: 1.0,
+        direct_over_signal: 50.0,
+        thresholds: super::super::limits::thresholds(&by_glare, &by_exposure, 0.5),
+        by_exposure,
+        by_glare,
+        words: Vec::new(),
+    };
+    found.words = words(&found, "`board`");
+    let [.., reach, of] = found.words.as_slice() else {
+        unreachable!()
+    };
+    assert!(
+        reach.contains("`published` (10, interpolated: studied at 1.0 and 100)"),
+        "{reach}"
+    );
+    assert!(
+        reach.ends_with(
+            "at least 100 ms, interpolated: studied at 10 ms and 1.0 s, by `published`."
+        ),
+        "{reach}"
+    );
+    assert!(
+        of.contains("over 20 seeds") && of.contains("16 times in all"),
+        "{of}"
+    );
 }

@@ -1,0 +1,80 @@
+//! Whether the estimates are as far from the scene as what was known beforehand lets expect.
+//!
+//! Unknowns that are drawn as their priors N(0, Λ⁻¹) say are found at
+//!
+//! > θ̂ ~ N(0, S),   S = Λ⁻¹ − (F + Λ)⁻¹
+//!
+//! so that θ̂ᵀS⁻¹θ̂ is χ² of as many degrees of freedom as the photographs tell directions (Box
+//! 1980, of the prior predictive distribution). A model that lacks something often fits all the
+//! same, for the geometry takes up what is missing: many unknowns a little each, which only all
+//! together tell.
+
+use serde::Serialize;
+
+use super::descent::{Problem, State};
+use crate::matrix::Matrix;
+use crate::num::linalg::svd;
+use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
+
+/// Of a direction's variance what the photographs must tell, for it to count: where that is less, S is
+/// a small difference of numbers that hold to first order.
+const TOLD: f64 = 0.2;
+
+/// What the geometric parameters whose size was known are together.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Beforehand {
+    /// θ̂ᵀS⁻¹θ̂.
+    pub chi2: f64,
+    /// Directions that the photographs tell.
+    pub directions: usize,
+    /// The largest deviation along one of them, in its expected scatter.
+    pub largest: f64,
+    /// Probability of as large a sum or of as large a deviation: twice the smaller one.
+    pub p: f64,
+}
+
+impl Beforehand {
+    /// Of the estimates in `state` with covariance (F + Λ)⁻¹; none where nothing that was known is
+    /// told.
+    pub(super) fn of(problem: &Problem<'_>, state: &State, covariance: &Matrix) -> Option<Self> {
+        let priors = problem
+            .priors
+            .iter()
+            .take(problem.geometry.parameters.len());
+        let known: Vec<(usize, f64)> = priors
+            .enumerate()
+            .filter_map(|(k, sigma)| Some((k, (*sigma)?)))
+            .collect();
+        // In units of what was known, where Λ is the identity.
+        let scatter = Matrix::from_fn(known.len(), known.len(), |a, b| {
+            let ((i, own), (j, other)) = (known[a], known[b]);
+            f64::from(a == b) - covariance[(i, j)] / (own * other)
+        });
+        let found = svd(&scatter).ok()?;
+        let told = (0..found.sigma.len()).filter(|k| found.sigma[*k] > TOLD);
+        let deviations: Vec<f64> = told
+            .map(|k| {
+                let part = |(own, (i, s)): (usize, &(usize, f64))| {
+                    found.u[(own, k)] * state.values[*i] / s
+                };
+                let along: f64 = known.iter().enumerate().map(part).sum();
+                along / found.sigma[k].sqrt()
+            })
+            .collect();
+        let directions = deviations.len();
+        let chi2 = deviations.iter().map(|z| z * z).sum();
+        let largest = deviations
+            .iter()
+            .fold(0.0, |most: f64, z| most.max(z.abs()));
+        (directions > 0).then(|| Self {
+            chi2,
+            directions,
+            largest,
+            p: {
+                let whole = chi_square_sf(chi2, directions as f64);
+                let one = sidak_p(normal_two_sided(largest), directions as u64);
+                (2.0 * whole.min(one)).min(1.0)
+            },
+        })
+    }
+}
