@@ -497,7 +497,7 @@ fn a_free_scales_uncertain_unit_is_told() {
             &model,
             &taken.phi,
             noise,
-            nuisance.clone(),
+            nuisance,
             &methods,
             &options,
             control,
