@@ -16,8 +16,8 @@ use crate::matrix::Matrix;
 use crate::num::linalg::svd;
 use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
 
-/// Of a direction's variance what the photographs must tell, for it to count: where that is less, S is
-/// a small difference of numbers that hold to first order.
+/// Of a direction's variance what the photographs must tell, for it to count: where that is less,
+/// S is a small difference of numbers that hold to first order.
 const TOLD: f64 = 0.2;
 
 /// What the geometric parameters whose size was known are together.

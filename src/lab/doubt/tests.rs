@@ -494,13 +494,7 @@ fn a_free_scales_uncertain_unit_is_told() {
         let methods = [Method::JointUnbounded, Method::JointGp];
         let (options, control) = (Options::default(), Control::none());
         let found = recover_objects(
-            &model,
-            &taken.phi,
-            noise,
-            nuisance,
-            &methods,
-            &options,
-            control,
+            &model, &taken.phi, noise, nuisance, &methods, &options, control,
         );
         let told = |k: usize| {
             let object = &found[k].outcome.as_ref().unwrap()[0];
