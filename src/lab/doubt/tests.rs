@@ -475,8 +475,8 @@ fn pictures_that_contradict_each_other_are_told() {
 }
 
 /// With a free scale the brightest of reflectances 0.9 and 0.85 is certain at little noise, and the
-/// picture is 0 off the truth in units of its brightest; at much noise that is told to be uncertain,
-/// of the unbounded recovery, whose errors are those of ratios to it.
+/// picture is right in units of its brightest; at much noise that is told to be uncertain, of the
+/// unbounded recovery, whose errors are those of ratios to it.
 #[test]
 fn a_free_scales_uncertain_unit_is_told() {
     let mut model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
