@@ -63,10 +63,12 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     } else {
         scene.clone()
     };
+    // A scene of fewer than three bounces has no light of the model.
     let beside = unmodelled(&modelled);
-    if !beside.is_empty() {
+    if !beside.is_empty() && scene.max_bounces >= 3 {
         console.say(format!(
-            "warning: the scene has light that the model of a recovery does not, and that it takes for the picture's: {}",
+            "warning: the model of a recovery does not know: {}. Where the photographs hold it, and it is not estimated \
+             beside (--background and the like), it is taken for the picture's",
             beside.join("; ")
         ));
     }

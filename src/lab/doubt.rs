@@ -118,29 +118,20 @@ fn impossible(found: &Recovered) -> Option<String> {
     })
 }
 
-/// A free scale of which it is not certain which element is the brightest, the unit.
+/// A free scale of which it is not certain which element is the brightest, the unit. Errors are
+/// those of ratios to it, so that 1 − ρ_j has that of ρ_j.
 fn unit_untold(found: &Recovered) -> Option<String> {
     let errors = found.standard_error.as_ref()?;
     let unit = found.reflectance.imax();
-    // Where that is so the errors are those of ratios to it, and it has none.
-    if !found.has_free_scale() || errors[unit] > 0.0 {
-        return None;
-    }
-    let below = |j: usize| 1.0 - found.reflectance[j];
-    let others = (0..errors.len()).filter(|j| *j != unit && below(*j) < BEYOND * errors[*j]);
-    let nearest = others.clone().min_by(|a, b| {
-        let [a, b] = [a, b].map(|j| below(*j) / errors[*j]);
-        a.total_cmp(&b)
-    })?;
+    let off = |j: usize| (1.0 - found.reflectance[j]) / errors[j];
+    let known = (0..errors.len()).filter(|j| errors[*j] > 0.0 && errors[*j].is_finite());
+    let others = known.filter(|j| found.has_free_scale() && *j != unit && off(*j) < BEYOND);
+    let nearest = others.clone().min_by(|a, b| off(*a).total_cmp(&off(*b)))?;
     Some(format!(
-        "the UNIT IS NOT CERTAIN: the scale is free, so that the brightest element is 1, and {} may be \
-         brighter (element {nearest}: {} ± {} of it). Errors are those of ratios to element {unit}; against \
-         the truly brightest all are off together by as much. Give the scale, compare ratios, or believe the \
-         errors of joint-gp",
-        match others.count() {
-            1 => "another one".to_owned(),
-            n => format!("{n} others"),
-        },
+        "the UNIT IS NOT CERTAIN: the scale is free, so that the brightest element is 1, and {} of the others \
+         may be brighter (one is {} ± {} of it). Errors are those of ratios to the element that is 1: in units of \
+         the truly brightest all are off together by as much. Give the scale, or compare ratios",
+        others.count(),
         figure(found.reflectance[nearest], 3),
         figure(errors[nearest], 2)
     ))
@@ -177,7 +168,7 @@ fn on_bounds(found: &Recovered) -> Option<String> {
 fn without_bands(found: &Recovered) -> Option<String> {
     let why = found.no_bands?;
     let cure = if found.has_free_scale() {
-        "joint-gp, whose errors know that the scale is free"
+        "joint-gp, to first order in ratios to the brightest element"
     } else {
         "joint, or of joint-unbounded where it drops no direction"
     };

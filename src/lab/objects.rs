@@ -16,7 +16,6 @@ use super::problem::problem;
 use super::refined::Refined;
 use super::study::Work;
 use crate::matrix::Matrix;
-use crate::metrics::rmse as rmse_of;
 use crate::model::MatrixModel;
 use crate::num::control::{Control, share_of};
 use crate::recovery::{
@@ -258,14 +257,12 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
         let truth = grid.is_known.then(|| model.albedo[range.clone()].to_vec());
-        let scores = truth.as_ref().map(|t| Measures::of(&reflectance, t));
-        let rmse = truth.as_ref().zip(unit);
-        let rmse = rmse.and_then(|(truth, unit)| {
-            rmse_of(
-                &reflectance,
-                &truth.iter().map(|t| t / unit).collect::<Vec<_>>(),
-            )
+        // Other measures do not depend on the unit.
+        let in_unit = truth.as_ref().map(|truth| {
+            let each = truth.iter().map(|t| t / unit.unwrap_or(1.0));
+            each.collect::<Vec<f64>>()
         });
+        let scores = in_unit.map(|truth| Measures::of(&reflectance, &truth));
         let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
         RecoveredObject {
             surface: grid.surface.clone(),
@@ -274,7 +271,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             mtf_raw: scores.and_then(|s| s.mtf_raw),
             mtf_normalized: scores.and_then(|s| s.mtf_normalized),
             correlation: scores.and_then(|s| s.correlation),
-            rmse,
+            rmse: scores.and_then(|s| s.rmse).filter(|_| unit.is_some()),
             parameter: words(found, explains),
             choice: Chosen::of(found),
             solver: found.solver.clone(),

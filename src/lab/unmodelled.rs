@@ -10,8 +10,8 @@ const POINTS: usize = 3;
 /// And of a wall, at which it may be sent on.
 const ACROSS: usize = 9;
 
-/// What of it `scene` has, in words, none where it has none: of up to its largest number of
-/// bounces.
+/// Light of `scene` that the three-bounce model does not have, in words, none where there is none:
+/// of up to its largest number of bounces.
 pub fn unmodelled(scene: &Scene) -> Vec<String> {
     let mut found: Vec<String> = scene
         .warnings()

@@ -137,7 +137,7 @@ fn light_that_a_recovery_does_not_model_is_told() {
         let line = format!("render deep.toml -o {told} --samples 64");
         let _ = workspace.phicam(&line).exits(0);
         let ended = workspace.phicam(&format!("recover {told} --method pinv"));
-        let words = "the model of a recovery does not";
+        let words = "the model of a recovery does not know";
         assert_eq!(ended.stderr.contains(words), told, "{}", ended.stderr);
         assert_eq!(ended.stderr.contains("light of 4 to 5 bounces"), told);
     }

@@ -2,16 +2,17 @@
 //!
 //! Unknowns that are drawn as their priors N(0, Λ⁻¹) say are found at
 //!
-//! > θ̂ ~ N(0, S),   S = Λ⁻¹ − (F + Λ)⁻¹
+//! > θ̂ ~ N(0, S),   S = Λ⁻¹ − (F + Λ)⁻¹ + E
 //!
-//! so that θ̂ᵀS⁻¹θ̂ is χ² of as many degrees of freedom as the photographs tell directions (Box
+//! E their errors that are not those of noise (other pictures, finer rules and elements), so that
+//! θ̂ᵀS⁻¹θ̂ is χ² of as many degrees of freedom as the photographs tell directions (Box
 //! 1980, of the prior predictive distribution). A model that lacks something often fits all the
 //! same, for the geometry takes up what is missing: many unknowns a little each, which only all
 //! together tell.
 
 use serde::Serialize;
 
-use super::descent::{Problem, State};
+use super::Calibrated;
 use crate::matrix::Matrix;
 use crate::num::linalg::svd;
 use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
@@ -34,31 +35,26 @@ pub struct Beforehand {
 }
 
 impl Beforehand {
-    /// Of the estimates in `state` with covariance (F + Λ)⁻¹; none where nothing that was known is
-    /// told.
-    pub(super) fn of(problem: &Problem<'_>, state: &State, covariance: &Matrix) -> Option<Self> {
-        let priors = problem
-            .priors
-            .iter()
-            .take(problem.geometry.parameters.len());
-        let known: Vec<(usize, f64)> = priors
-            .enumerate()
-            .filter_map(|(k, sigma)| Some((k, (*sigma)?)))
-            .collect();
+    /// Of these estimates, the first of all unknowns, with covariance (F + Λ)⁻¹; none where nothing
+    /// that was known is told.
+    pub(super) fn of(found: &[Calibrated], covariance: &Matrix) -> Option<Self> {
+        let known = found.iter().enumerate();
+        let known = known.filter_map(|(k, own)| Some((k, own, own.prior?)));
+        let known: Vec<(usize, &Calibrated, f64)> = known.collect();
         // In units of what was known, where Λ is the identity.
         let scatter = Matrix::from_fn(known.len(), known.len(), |a, b| {
-            let ((i, own), (j, other)) = (known[a], known[b]);
-            f64::from(a == b) - covariance[(i, j)] / (own * other)
+            let ((i, own, prior), (j, _, other)) = (known[a], known[b]);
+            let beside = own.beside_noise() / (prior * prior);
+            f64::from(a == b) * (1.0 + beside) - covariance[(i, j)] / (prior * other)
         });
-        let found = svd(&scatter).ok()?;
-        let told = (0..found.sigma.len()).filter(|k| found.sigma[*k] > TOLD);
+        let scatter = svd(&scatter).ok()?;
+        let told = (0..scatter.sigma.len()).filter(|k| scatter.sigma[*k] > TOLD);
         let deviations: Vec<f64> = told
             .map(|k| {
-                let part = |(own, (i, s)): (usize, &(usize, f64))| {
-                    found.u[(own, k)] * state.values[*i] / s
-                };
-                let along: f64 = known.iter().enumerate().map(part).sum();
-                along / found.sigma[k].sqrt()
+                let parts = known.iter().enumerate();
+                let along =
+                    parts.map(|(own, (_, of, prior))| scatter.u[(own, k)] * of.value / prior);
+                along.sum::<f64>() / scatter.sigma[k].sqrt()
             })
             .collect();
         let directions = deviations.len();

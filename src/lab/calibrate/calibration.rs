@@ -6,6 +6,9 @@ use super::{Beforehand, Direction, FinerElements, Identified, Profile, Stage};
 use crate::lab::located::Grid;
 use crate::recovery::ErrorField;
 
+/// Of a prior's variance what is always counted as told: an error is known to no better.
+const LEAST: f64 = 0.01;
+
 /// An unknown, as it was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibrated {
@@ -39,6 +42,24 @@ pub struct Calibrated {
     pub profile: Option<Profile>,
 }
 
+impl Calibrated {
+    /// The variance by what is no noise: other pictures, a finer rule, finer elements.
+    pub(super) fn beside_noise(&self) -> f64 {
+        let own = self.by_curvature * self.by_curvature;
+        let pictures = (self.by_pictures * self.by_pictures - own).max(0.0);
+        let finer = [self.by_rule, self.by_elements].into_iter().flatten();
+        pictures + finer.map(|moved| moved * moved).sum::<f64>()
+    }
+
+    /// Standard deviation of the estimate about 0 that what was known lets expect: it is drawn
+    /// there, √(prior² − error²). None where nothing was known.
+    pub(super) fn scatter(&self) -> Option<f64> {
+        let known = self.prior? * self.prior?;
+        let own = (known - self.by_curvature * self.by_curvature).max(LEAST * known);
+        Some((own + self.beside_noise()).sqrt())
+    }
+}
+
 /// How far the starts led to one place.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Starts {
@@ -64,7 +85,8 @@ pub struct Calibration {
     pub finer_elements: Option<FinerElements>,
     /// Combinations that the photographs alone do not tell.
     pub untold: Vec<Direction>,
-    /// The parameters together against what was known beforehand; absent where nothing was.
+    /// The parameters together against what was known beforehand; absent where nothing was, and
+    /// where of no direction that was known the photographs tell enough.
     pub beforehand: Option<Beforehand>,
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.

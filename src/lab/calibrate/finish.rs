@@ -157,7 +157,7 @@ impl CalibrationPlan {
             is_integrated,
             finer_elements: elements,
             untold,
-            beforehand: Beforehand::of(problem, best, &covariance),
+            beforehand: Beforehand::of(&found[..problem.geometry.parameters.len()], &covariance),
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),

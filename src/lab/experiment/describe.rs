@@ -74,7 +74,7 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
         };
         said.push(format!(
             "Each ± is the scatter of one reading over {} seeds: the sensor's noise, and the light traced anew{more}. \
-             Thresholds are those of the means.",
+             Glare and exposures are set by the first of these; thresholds are those of the means.",
             found.seeds
         ));
     }

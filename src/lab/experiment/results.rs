@@ -15,9 +15,9 @@ pub struct ExperimentPlan {
     pub sensor_name: String,
     /// Paths per pixel of the traced light.
     pub samples: u64,
-    /// Seed of the tracer, and first one of the sensor.
+    /// First seed of the tracer and of the sensor.
     pub seed: u64,
-    /// Seeds of the sensor's noise.
+    /// Seeds of the sensor's noise and of the traced light.
     pub seeds: u64,
     /// Frames averaged at each spot in the sweep over glare; the sweep over exposures takes one.
     pub frames: u32,
@@ -131,7 +131,7 @@ pub struct Experiment {
     pub scene_hash: String,
     /// The sensor.
     pub sensor: String,
-    /// Seeds of the sensor's noise.
+    /// Seeds of the sensor's noise and of the traced light.
     pub seeds: u64,
     /// How often the light was traced, with seeds of its own.
     pub traced: usize,

@@ -1,5 +1,7 @@
 //! The study in tasks: each one series of photographs under one seed of the sensor.
 
+use std::sync::OnceLock;
+
 use super::analysis::{ANALYSES, Laboratory};
 use super::describe::words;
 use super::limits::thresholds;
@@ -55,7 +57,7 @@ pub(in crate::lab) const STUDY: Registered = Registered {
         )
         .or("4")
         .within(1, 100_000),
-        Opt::seed("Seed of the tracer and first one of the sensor"),
+        Opt::seed("First seed of the tracer and of the sensor"),
     ],
     prepare: |scene, values| {
         let NamedSensor { name, sensor, .. } =
@@ -91,8 +93,8 @@ const TRACED: u64 = 16;
 pub struct Context {
     laboratory: Laboratory,
     /// Flux from the object, pixels × spots, W: traced anew for each seed of the sensor, the first
-    /// [`TRACED`] of them.
-    signals: Vec<Matrix>,
+    /// [`TRACED`] of them, when it is first asked for. The settings are those of the first.
+    signals: Vec<OnceLock<Matrix>>,
     /// Flux that enters the lens straight from the spots, W, over all of them.
     direct: f64,
     patterns: [Pattern; 2],
@@ -105,13 +107,40 @@ impl ExperimentTasks {
         Self { scene, plan }
     }
 
-    fn series<'a>(&self, context: &'a Context) -> Vec<Series<'a>> {
-        series::all(
-            &self.scene,
-            &self.plan,
-            &context.patterns,
-            &context.signals[0],
-        )
+    fn series<'a>(&self, context: &'a Context, signal: &Matrix) -> Vec<Series<'a>> {
+        series::all(&self.scene, &self.plan, &context.patterns, signal)
+    }
+
+    /// The light of the object by the seed of this draw.
+    fn traced(&self, draw: u64, control: Control<'_>) -> Result<Matrix, LabError> {
+        let (scene, sampling) = (&self.scene, Sampling::Sobol);
+        let trace = Plan {
+            estimator: Estimator::Shared,
+            sampling,
+            seed: self.plan.seed.wrapping_add(draw),
+            budget: Budget::new(self.plan.samples, sampling)?,
+        };
+        let signal = render(scene, &trace, 0..scene.laser.spots.len(), control)?.flux;
+        if signal.sum() <= 0.0 {
+            return Err(LabError::DARK_OBJECT);
+        }
+        Ok(signal)
+    }
+
+    /// The same, traced once.
+    fn signal<'a>(
+        &self,
+        context: &'a Context,
+        draw: usize,
+        control: Control<'_>,
+    ) -> Result<&'a Matrix, LabError> {
+        let draw = draw % context.signals.len();
+        let own = &context.signals[draw];
+        if let Some(signal) = own.get() {
+            return Ok(signal);
+        }
+        let signal = self.traced(draw as u64, control)?;
+        Ok(own.get_or_init(|| signal))
     }
 }
 
@@ -129,28 +158,14 @@ impl Study for ExperimentTasks {
     fn context(&self, control: Control<'_>) -> Result<Context, LabError> {
         let Self { scene, plan } = self;
         plan.check()?;
-        let sampling = Sampling::Sobol;
         let laboratory = Laboratory::new(
             MatrixModel::new(scene, Kernel::Physical, None)?,
             MatrixModel::new(scene, Kernel::Published, None)?,
             [scene.camera.columns, scene.camera.rows],
         );
-        let budget = Budget::new(plan.samples, sampling)?;
-        let traced = |draw: u64| {
-            let trace = Plan {
-                estimator: Estimator::Shared,
-                sampling,
-                seed: plan.seed.wrapping_add(draw),
-                budget,
-            };
-            let signal = render(scene, &trace, 0..scene.laser.spots.len(), control)?.flux;
-            if signal.sum() <= 0.0 {
-                return Err(LabError::DARK_OBJECT);
-            }
-            Ok(signal)
-        };
-        let signals = (0..plan.seeds.clamp(1, TRACED)).map(traced);
-        let signals = signals.collect::<Result<_, LabError>>()?;
+        let signals = vec![OnceLock::from(self.traced(0, control)?)];
+        let further = (1..plan.seeds.min(TRACED)).map(|_| OnceLock::new());
+        let signals = signals.into_iter().chain(further).collect();
         let direct: f64 = entering_lens(scene).iter().sum();
         if direct <= 0.0 {
             return Err(LabError::NO_GLARE);
@@ -163,19 +178,23 @@ impl Study for ExperimentTasks {
         })
     }
 
-    fn task(&self, context: &Context, index: usize, _: Control<'_>) -> Result<Seed, LabError> {
+    fn task(
+        &self,
+        context: &Context,
+        index: usize,
+        control: Control<'_>,
+    ) -> Result<Seed, LabError> {
         let Self { scene, plan } = self;
         let seeds = plan.seeds as usize;
         let draw = index % seeds;
         let seed = plan.seed.wrapping_add(draw as u64);
-        let series = &self.series(context)[index / seeds];
-        let Context {
-            laboratory,
-            signals,
-            ..
-        } = context;
-        let signal = &signals[draw % signals.len()];
-        series::read(scene, plan, laboratory, series, signal, seed)
+        let quiet = Control {
+            progress: &|_| (),
+            ..control
+        };
+        let series = &self.series(context, self.signal(context, 0, quiet)?)[index / seeds];
+        let signal = self.signal(context, draw, quiet)?;
+        series::read(scene, plan, &context.laboratory, series, signal, seed)
     }
 
     fn fits(&self, _: &Context, _: usize, part: &Seed) -> bool {
@@ -184,8 +203,8 @@ impl Study for ExperimentTasks {
 
     fn finish(&self, context: &Context, parts: Vec<Seed>) -> Result<Experiment, LabError> {
         let Self { scene, plan } = self;
-        let signal = &context.signals[0];
-        let series = self.series(context);
+        let signal = self.signal(context, 0, Control::none())?;
+        let series = self.series(context, signal);
         let seeds = parts.chunks((plan.seeds as usize).max(1));
         let settings = series.iter().zip(seeds);
         let mut by_glare: Vec<Setting> = settings

@@ -20,9 +20,8 @@ pub struct Best {
     pub method: Option<String>,
     /// The level up to which it holds.
     pub level: Option<f64>,
-    /// From and to where the scatter of the draws may move that level
-    /// ([`NoiseCurve::held_within`]).
-    pub within: Option<[f64; 2]>,
+    /// How far the scatter of the draws may move it ([`NoiseCurve::held_within`]).
+    pub within: Option<[Option<Held>; 2]>,
     /// Whether it falls there.
     pub reach: Option<Reach>,
     /// Root mean square error at that level, over elements and draws; between two levels its square

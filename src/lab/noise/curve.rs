@@ -9,6 +9,7 @@ use super::plan::NoisePlan;
 use super::trial::Trial;
 use crate::lab::Measures;
 use crate::lab::ensemble::{Draws, MOST_SPREAD, Spread};
+use crate::num::statistics::student_threshold;
 use crate::recovery::Method;
 
 /// The modulations whose loss is reported, relative to those of the picture itself.
@@ -78,7 +79,7 @@ impl Point {
     }
 }
 
-/// Standard errors of a mean on either side that hold it in 95 of 100.
+/// Standard deviations on either side of a normal number that hold it in 95 of 100.
 const SURELY: f64 = 1.96;
 
 /// Where a mean modulation falls to a limit, coming from the quiet end.
@@ -145,10 +146,9 @@ pub struct NoiseCurve {
     /// above 2 − m, relative to the picture's own; there dark would come out too dark. None where
     /// it is not there at the quietest.
     pub held: Option<Held>,
-    /// The same with all means lower, and higher, by 1.96 of their standard errors: from and to
-    /// where the scatter of the draws may move it. None of one draw; where lower means do not hold
-    /// it at all, the quietest level.
-    pub held_within: Option<[f64; 2]>,
+    /// The same with all means lower, and all higher, by what holds each in 95 of 100 (Student's
+    /// t): how far the scatter of the draws may move it. None of one draw.
+    pub held_within: Option<[Option<Held>; 2]>,
 }
 
 impl NoiseCurve {
@@ -188,23 +188,23 @@ impl NoiseCurve {
             .iter()
             .map(|p| known(p, p.mtf_normalized, full[1]))
             .collect();
+        let most = 2.0 - LIMITS[0];
+        // Whether a mean is to be trusted is not shifted.
         let shifted = |sign: f64| -> Option<Vec<(f64, Option<f64>)>> {
-            let each = points.iter().zip(&raw);
-            let each = each.map(|(p, (level, mean))| {
-                let error = p.mtf_raw?.stderr? * sign * SURELY / full[0];
-                // A mean that is to be trusted stays so.
-                let most = mean.map(|m| m.max(2.0 - LIMITS[0]));
-                Some((*level, mean.map(|m| (m + error).min(most.unwrap_or(m)))))
+            let each = points.iter().zip(&raw).map(|(p, (level, mean))| {
+                let Some(mean) = mean.filter(|mean| *mean <= most) else {
+                    return Some((*level, *mean));
+                };
+                let spread = p.mtf_raw?;
+                let times = student_threshold(SURELY, spread.draws as f64 - 1.0);
+                let error = sign * times * spread.stderr? / full[0];
+                Some((*level, Some((mean + error).min(most))))
             });
             each.collect()
         };
-        let limit_of = |means: Vec<_>| held(&means, LIMITS[0], &plan.axis).map(|h| h.level);
-        let held_within = shifted(-1.0).zip(shifted(1.0)).and_then(|(low, high)| {
-            Some([
-                limit_of(low).or(plan.levels.first().copied())?,
-                limit_of(high)?,
-            ])
-        });
+        let limit = |means: &[_]| held(means, LIMITS[0], &plan.axis);
+        let held_within = shifted(-1.0).zip(shifted(1.0));
+        let held_within = held_within.map(|(low, high)| [limit(&low), limit(&high)]);
         let lost = |means: &[_]| LIMITS.map(|limit| lost(means, limit, &plan.axis));
         Self {
             picture,

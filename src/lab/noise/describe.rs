@@ -3,7 +3,7 @@
 mod tables;
 
 use super::best::Best;
-use super::curve::{LIMITS, Lost, NoiseCurve, Point, Reach};
+use super::curve::{Held, LIMITS, Lost, NoiseCurve, Point, Reach};
 use super::picture::Picture;
 use super::study::NoiseStudy;
 use crate::lab::ensemble::Spread;
@@ -121,16 +121,7 @@ impl NoiseStudy {
                     (Some(Reach::AtLeast), true) => "at most ",
                     _ => "",
                 };
-                let within = b.within.filter(|[from, to]| from != to);
-                let within = within.map_or(String::new(), |[from, to]| {
-                    let draws = self.curves.iter().flat_map(|c| &c.points);
-                    let draws = draws.map(|p| p.draws).max().unwrap_or(0);
-                    format!(
-                        ", {} to {} by the scatter of {draws} draws",
-                        figure(from, 2),
-                        figure(to, 2)
-                    )
-                });
+                let within = self.within(b);
                 format!(
                     "{object}: {sign}{} by {method}{within}{published}",
                     figure(level, 2)
@@ -143,6 +134,28 @@ impl NoiseStudy {
             }
             _ => format!("{object}: no method reaches it{published}"),
         }
+    }
+
+    /// How far the scatter of the draws may move the level of the best method.
+    fn within(&self, b: &Best) -> String {
+        let Some([from, to]) = b.within.filter(|[from, to]| from != to) else {
+            return String::new();
+        };
+        let level = |held: Option<Held>| match held {
+            None => "less than the quietest studied".to_owned(),
+            Some(held) => figure(held.level, 2),
+        };
+        let beyond = match (to.map(|held| held.reach), self.axis.falls()) {
+            (Some(Reach::AtLeast), false) => " or more",
+            (Some(Reach::AtLeast), true) => " or less",
+            _ => "",
+        };
+        format!(
+            " (from {} to {}{beyond} by the scatter of {} draws)",
+            level(from),
+            level(to),
+            self.seeds
+        )
     }
 
     /// Whether no recovery of an object has a modulation, though there are some.

@@ -127,6 +127,7 @@ pub(super) fn over_brightest(of_x: &DMatrix<f64>, x: &DVector<f64>) -> DMatrix<f
     let (m, largest) = x.argmax();
     let mut slope = DMatrix::identity(x.len(), x.len());
     slope.column_mut(m).axpy(-1.0 / largest, x, 1.0);
+    slope.row_mut(m).fill(0.0);
     product(&product(&slope, of_x), &slope.transpose()) / (largest * largest)
 }
 

@@ -6,38 +6,43 @@ use crate::lab::calibrate::{Calibrated, Calibration};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::lab::finding::listed;
 use crate::num::digits::figure;
+use crate::num::statistics::sidak_threshold;
 use crate::recovery::Deviations;
 
-/// An estimate farther from the scene than this, in the scatter that what was known beforehand lets
-/// expect, is told.
-const FAR: f64 = 3.0;
-/// Of a prior's variance what is always counted as told: an error is known to no better.
-const LEAST: f64 = 0.01;
+/// Probability of a single parameter as far off, of all that were known.
+const FAR: f64 = 0.01;
 
 impl Calibration {
-    /// Whether what was known beforehand does not hold the parameters together.
+    /// Whether single parameters, or all together, are farther off than they were known to.
     pub(super) fn is_beyond(&self) -> bool {
+        self.is_beyond_together() || self.far().next().is_some()
+    }
+
+    fn is_beyond_together(&self) -> bool {
         self.beforehand.is_some_and(|of| of.p < FIT_LEVEL)
     }
 
-    /// What is said where single parameters, or all together, are farther off than they were known
-    /// to.
+    /// The parameters that are, each over the scatter that is expected.
+    fn far(&self) -> impl Iterator<Item = (&Calibrated, f64)> {
+        let off = |f: &Calibrated| Some(f.value.abs() / f.scatter()?);
+        let known = self.geometry().filter(|f| f.prior.is_some()).count();
+        let most = sidak_threshold(FAR, known.max(1) as u64);
+        let each = self.geometry().filter_map(move |f| Some((f, off(f)?)));
+        each.filter(move |(_, off)| *off > most)
+    }
+
+    /// What is said of them.
     pub(super) fn beyond(&self) -> Option<String> {
-        let far = self.geometry().filter_map(|f| {
-            let prior = f.prior?;
-            // The estimate is drawn to 0: its expected scatter is √(prior² − error²).
-            let scatter = (prior * prior - f.by_curvature * f.by_curvature)
-                .max(LEAST * prior * prior)
-                .sqrt();
-            (f.value.abs() > FAR * scatter)
-                .then(|| format!("{} ({} σ)", f.name, figure(f.value.abs() / scatter, 2)))
-        });
-        let mut far: Vec<String> = far.collect();
-        far.extend(self.beforehand.filter(|_| self.is_beyond()).map(|of| {
+        let mut far: Vec<String> = self
+            .far()
+            .map(|(f, off)| format!("{} ({} σ)", f.name, figure(off, 2)))
+            .collect();
+        far.extend(self.beforehand.filter(|_| self.is_beyond_together()).map(|of| {
             format!(
-                "all together (χ² {} of {} directions that the photographs tell, P {})",
+                "all together (χ² {} of {} directions that the photographs tell, at most {} σ; P {})",
                 figure(of.chi2, 3),
                 of.directions,
+                figure(of.largest, 2),
                 figure(of.p, 1)
             )
         }));
