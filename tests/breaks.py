@@ -1117,8 +1117,8 @@ BREAKS = [
     Break(
         "What a finer rule of integration moves is in the errors of `calibrate`",
         "src/lab/calibrate/finish.rs",
-        "noise * noise + rule * rule + even * even",
-        "noise * noise + even * even",
+        "let finer = rule * rule + even * even;",
+        "let finer = even * even + 0.0 * rule;",
         "lib",
         "lab::calibrate::tests::errors::what_the_integration_leaves_is_in_the_errors",
         9,

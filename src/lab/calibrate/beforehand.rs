@@ -44,7 +44,7 @@ impl Beforehand {
         // In units of what was known, where Λ is the identity.
         let scatter = Matrix::from_fn(known.len(), known.len(), |a, b| {
             let ((i, own, prior), (j, _, other)) = (known[a], known[b]);
-            let beside = own.beside_noise() / (prior * prior);
+            let beside = own.beside_noise / (prior * prior);
             f64::from(a == b) * (1.0 + beside) - covariance[(i, j)] / (prior * other)
         });
         let scatter = svd(&scatter).ok()?;

@@ -36,6 +36,9 @@ pub struct Calibrated {
     /// How far finer elements of the picture move it, where the photographs ask for them: a part of
     /// the error.
     pub by_elements: Option<f64>,
+    /// Variance by what is no noise: other pictures, a finer rule where light is integrated, finer
+    /// elements.
+    pub beside_noise: f64,
     /// What the photographs tell of it at the start.
     pub identified: Identified,
     /// Its profile; absent of gains and of more than twelve parameters.
@@ -43,20 +46,12 @@ pub struct Calibrated {
 }
 
 impl Calibrated {
-    /// The variance by what is no noise: other pictures, a finer rule, finer elements.
-    pub(super) fn beside_noise(&self) -> f64 {
-        let own = self.by_curvature * self.by_curvature;
-        let pictures = (self.by_pictures * self.by_pictures - own).max(0.0);
-        let finer = [self.by_rule, self.by_elements].into_iter().flatten();
-        pictures + finer.map(|moved| moved * moved).sum::<f64>()
-    }
-
     /// Standard deviation of the estimate about 0 that what was known lets expect: it is drawn
     /// there, √(prior² − error²). None where nothing was known.
     pub(super) fn scatter(&self) -> Option<f64> {
         let known = self.prior? * self.prior?;
         let own = (known - self.by_curvature * self.by_curvature).max(LEAST * known);
-        Some((own + self.beside_noise()).sqrt())
+        Some((own + self.beside_noise).sqrt())
     }
 }
 

@@ -100,7 +100,9 @@ impl CalibrationPlan {
             let by_elements = elements.as_ref().and_then(|e| e.moved.get(k));
             let by_elements = by_elements.map(|moved| moved.abs());
             let [rule, even] = [rule, by_elements].map(|moved| moved.unwrap_or(0.0));
-            let stderr = (noise * noise + rule * rule + even * even).sqrt();
+            let finer = rule * rule + even * even;
+            let stderr = (noise * noise + finer).sqrt();
+            let pictures = by_pictures[k] * by_pictures[k] - by_curvature * by_curvature;
             let more = stderr / by_curvature;
             (0..whole.nrows()).for_each(|j| {
                 whole[(k, j)] *= more;
@@ -119,6 +121,7 @@ impl CalibrationPlan {
                 by_pictures: by_pictures[k],
                 by_rule,
                 by_elements,
+                beside_noise: pictures.max(0.0) + finer,
                 identified,
                 profile,
             });
