@@ -7,7 +7,7 @@ use crate::lab::finding::{
 };
 use crate::num::digits::{figure, significant};
 
-/// Neighbouring settings of a larger ratio are named beside what is interpolated between them.
+/// Neighbouring settings of a larger ratio are named beside a threshold between them.
 const WIDE: f64 = 2.0;
 
 /// What of a setting a sweep varies.
@@ -169,12 +169,12 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
     )
 }
 
-/// That a threshold is interpolated over a wide gap, and which.
+/// That a threshold lies in or at a wide gap, and in which.
 fn far(between: Option<[f64; 2]>, number: impl Fn(f64) -> String) -> String {
     let wide = between.filter(|[low, high]| *high > WIDE * low);
     wide.map_or(String::new(), |[low, high]| {
         format!(
-            ", interpolated: studied at {} and {}",
+            ", between {} and {} nothing was studied",
             number(low),
             number(high)
         )

@@ -55,17 +55,19 @@ fn last_readable(line: &[[f64; 2]], level: f64) -> Option<(f64, Option<[f64; 2]>
     let Some([[x0, y0], [x1, y1]]) = end.map(|w| [w[0], w[1]]) else {
         return line.last().map(|p| (p[0], None));
     };
-    if !y1.is_finite() {
-        return Some((x0, None));
-    }
-    let t = (y0 - level) / (y0 - y1);
+    // Where there is no reading, as far as there is one.
+    let t = if y1.is_finite() {
+        (y0 - level) / (y0 - y1)
+    } else {
+        0.0
+    };
     let at = if x0 > 0.0 && x1 > 0.0 {
         x0 * libm::pow(x1 / x0, t)
     } else {
         x0 + t * (x1 - x0)
     };
     let between = [x0.min(x1), x0.max(x1)];
-    Some((at, (t > 0.0 && t < 1.0).then_some(between)))
+    Some((at, (t < 1.0).then_some(between)))
 }
 
 #[cfg(test)]
@@ -89,7 +91,7 @@ mod tests {
         );
         assert_eq!(
             last_readable(&[[3.0, 0.75], [2.0, f64::NEG_INFINITY]], 0.5),
-            Some((3.0, None))
+            Some((3.0, Some([2.0, 3.0])))
         );
         assert_eq!(last_readable(&[], 0.5), None);
     }

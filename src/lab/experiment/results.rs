@@ -112,7 +112,7 @@ pub struct Threshold {
     /// [`Experiment::READABLE`] of the picture's own; none where the least glare of the study is
     /// too much.
     pub glare: Option<f64>,
-    /// The neighbouring settings between which that was interpolated; none where it is one that was
+    /// The neighbouring settings between which it falls below that; none at the end of what was
     /// studied.
     pub glare_between: Option<[f64; 2]>,
     /// Shortest exposure, s, from which on it stays there with glare as strong as the signal; none

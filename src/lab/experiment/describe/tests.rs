@@ -135,12 +135,12 @@ fn what_is_interpolated_is_told() {
         unreachable!()
     };
     assert!(
-        reach.contains("`published` (10, interpolated: studied at 1.0 and 100)"),
+        reach.contains("`published` (10, between 1.0 and 100 nothing was studied)"),
         "{reach}"
     );
     assert!(
         reach.ends_with(
-            "at least 100 ms, interpolated: studied at 10 ms and 1.0 s, by `published`."
+            "at least 100 ms, between 10 ms and 1.0 s nothing was studied, by `published`."
         ),
         "{reach}"
     );
