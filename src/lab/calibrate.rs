@@ -13,7 +13,7 @@
 //! photographs do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov
 //! θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
 //! where the photographs ask for it, and so is what the next rule of integration would
-//! ([`rule`]).
+//! ([`rule`]). All parameters together are held against what was known of them ([`beforehand`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
