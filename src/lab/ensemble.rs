@@ -40,7 +40,14 @@ impl Photographs {
     /// Φcam with each entry times 1 + σ·N(0, 1), σ = `noise`. One seed gives the same deviates at
     /// every σ, so that methods, levels and objects are compared under the same draw.
     pub(super) fn relative(exact: &Matrix, noise: f64, seed: u64) -> Self {
-        Self::drawn(exact, exact.map(|x| noise * x.abs()), seed)
+        let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
+        Self::of_deviates(exact, noise, &deviates)
+    }
+
+    /// The same of deviates that were drawn before.
+    pub(super) fn of_deviates(exact: &Matrix, noise: f64, deviates: &Matrix) -> Self {
+        let stderr = exact.map(|x| noise * x.abs());
+        Self::told(exact + deviates.component_mul(&stderr), stderr)
     }
 
     /// Φcam with a normal deviate of each entry's standard error added.

@@ -19,10 +19,28 @@ const DRAWS: u64 = 200;
 /// The modulation that is held.
 const HELD: f64 = 0.9;
 
+/// Normal deviates: of the scale, and of every entry.
+struct Draw {
+    scale: f64,
+    entries: Matrix,
+}
+
+impl Draw {
+    fn new([pixels, spots]: [usize; 2], seed: u64) -> Self {
+        let mut normal = normal_numbers(seed);
+        Self {
+            scale: normal(),
+            entries: Matrix::from_fn(pixels, spots, |_, _| normal()),
+        }
+    }
+}
+
 /// A board and the model that photographs and inverts it.
 struct Board {
     model: MatrixModel,
     exact: Matrix,
+    /// G_ij = Σ A_i A_j of all entries, A_i the light of an element over that of the board.
+    gram: Matrix,
 }
 
 /// What is known beforehand.
@@ -38,17 +56,23 @@ impl Board {
         let scene = Scene::load("bench").unwrap().with_checkerboard(checks);
         let model = MatrixModel::new(&scene, Kernel::Physical, Some([elements; 2])).unwrap();
         let exact = model.phi();
-        Self { model, exact }
+        let (c, d) = (&model.camera_side, &model.laser_side);
+        let weight = exact.map(|x| (x * x).recip());
+        let pair = |i: usize, j: usize| {
+            let left = c.column(i).component_mul(&c.column(j)).transpose() * &weight;
+            (left * d.row(i).component_mul(&d.row(j)).transpose())[0]
+        };
+        let n = model.albedo.len();
+        let gram = Matrix::from_fn(n, n, |i, j| pair(i.min(j), i.max(j)));
+        Self { model, exact, gram }
     }
 
-    /// One draw of photographs, each entry with noise of so much of itself.
-    fn photographs(&self, noise: f64, scale_error: f64, seed: u64) -> [Matrix; 2] {
-        let mut normal = normal_numbers(seed);
-        let scale = (1.0 + scale_error * normal()).max(0.1);
-        let deviates = self.exact.map(|_| normal());
+    /// Photographs, each entry with noise of so much of itself.
+    fn photographs(&self, noise: f64, scale_error: f64, draw: &Draw) -> [Matrix; 2] {
+        let scale = (1.0 + scale_error * draw.scale).max(0.1);
         let stderr = self.exact.map(|x| noise * x);
         [
-            &self.exact * scale + deviates.component_mul(&stderr),
+            &self.exact * scale + draw.entries.component_mul(&stderr),
             stderr,
         ]
     }
@@ -56,23 +80,17 @@ impl Board {
     /// The pattern of the largest marginals, by the sum over all patterns: about the true one s₀,
     /// χ²(s) − χ²(s₀) = (s − s₀)ᵀ G (s − s₀) − 2 (s − s₀)ᵀ b, G = AᵀA, b = Aᵀ(Φ − A s₀), A the
     /// light of each element over the standard errors.
-    fn best(&self, [phi, stderr]: &[Matrix; 2]) -> Vec<f64> {
-        let (c, d, truth) = (
-            &self.model.camera_side,
-            &self.model.laser_side,
-            &self.model.albedo,
-        );
+    fn best(&self, noise: f64, draw: &Draw) -> Vec<f64> {
+        let [phi, stderr] = &self.photographs(noise, 0.0, draw);
+        let (c, d) = (&self.model.camera_side, &self.model.laser_side);
+        let truth = &self.model.albedo;
         let n = truth.len();
         let weight = stderr.map(|s| (s * s).recip());
         let off = (phi - &self.exact).component_mul(&weight);
         let b: Vec<f64> = (0..n)
             .map(|j| (c.column(j).transpose() * &off * d.row(j).transpose())[0])
             .collect();
-        let pair = |i: usize, j: usize| {
-            let left = c.column(i).component_mul(&c.column(j)).transpose() * &weight;
-            (left * d.row(i).component_mul(&d.row(j)).transpose())[0]
-        };
-        let gram = Matrix::from_fn(n, n, |i, j| pair(i.min(j), i.max(j)));
+        let gram = &self.gram / (noise * noise);
         // In Gray's order one element changes at a time, which changes χ² by δ (2 (G x)_j + δ G_jj −
         // 2 b_j), x = s − s₀.
         let mut x: Vec<f64> = truth.iter().map(|own| -own).collect();
@@ -140,16 +158,13 @@ fn lost(levels: &[f64], means: &[f64]) -> f64 {
 }
 
 /// The noise at which the mean modulation falls to what is held, from `quiet` on in steps of √2.
-fn borne(quiet: f64, draws: u64, mtf: impl Fn(f64, u64) -> f64 + Sync) -> f64 {
+fn borne(quiet: f64, draws: &[Draw], mtf: impl Fn(f64, &Draw) -> f64 + Sync) -> f64 {
     let (mut levels, mut means) = (Vec::new(), Vec::new());
     while means.last().is_none_or(|mean| *mean >= HELD) {
         let noise = quiet * 2f64.powf(0.5 * levels.len() as f64);
-        let all: Vec<f64> = (0..draws)
-            .into_par_iter()
-            .map(|seed| mtf(noise, seed))
-            .collect();
+        let all: Vec<f64> = draws.par_iter().map(|draw| mtf(noise, draw)).collect();
         levels.push(noise);
-        means.push(all.iter().sum::<f64>() / draws as f64);
+        means.push(all.iter().sum::<f64>() / draws.len() as f64);
     }
     lost(&levels, &means)
 }
@@ -160,28 +175,34 @@ fn borne(quiet: f64, draws: u64, mtf: impl Fn(f64, u64) -> f64 + Sync) -> f64 {
 #[test]
 #[ignore = "slow"]
 fn boards_are_recovered_at_the_bayes_limit() {
+    let bench = Scene::load("bench").unwrap();
+    let shape = [bench.camera.pixels(), bench.laser.spots.len()];
+    let draws: Vec<Draw> = (0..DRAWS)
+        .into_par_iter()
+        .map(|seed| Draw::new(shape, seed))
+        .collect();
     for (checks, elements, quiet, unknown) in [(2, 2, 0.5, 40), (2, 4, 0.1, 0), (4, 4, 0.02, 0)] {
         let board = Board::new(checks, elements);
-        let best = borne(quiet, DRAWS, |noise, seed| {
-            board.mtf(&board.best(&board.photographs(noise, 0.0, seed)))
+        let best = borne(quiet, &draws, |noise, draw| {
+            board.mtf(&board.best(noise, draw))
         });
-        let found = |levels, scale_error: Option<f64>, draws| {
+        let found = |levels, scale_error: Option<f64>, draws: &[Draw]| {
             let known = Known {
                 levels,
                 scale_error,
             };
-            borne(quiet, draws, |noise, seed| {
-                let photographs = board.photographs(noise, scale_error.unwrap_or(0.0), seed);
+            borne(quiet, draws, |noise, draw| {
+                let photographs = board.photographs(noise, scale_error.unwrap_or(0.0), draw);
                 let found = board.recovered(&photographs, known);
                 board.mtf(found.reflectance.as_slice())
             })
         };
-        let told = found(true, None, DRAWS);
+        let told = found(true, None, &draws);
         println!("{checks} × {checks} on {elements} × {elements}: Bayes {best:.3}, told {told:.3}");
         assert!(told > best / 1.2, "{checks} {elements}: {told} {best}");
         if unknown > 0 {
             let others = [(true, Some(0.1)), (false, None), (false, Some(0.1))];
-            let lost = others.map(|(levels, scale)| found(levels, scale, unknown));
+            let lost = others.map(|(levels, scale)| found(levels, scale, &draws[..unknown]));
             println!("unknown scale, levels, both: {lost:.3?}");
             // What is not known cannot help, but for the chance of the draws.
             assert!(lost.iter().all(|x| *x < 1.1 * best), "{lost:?} {best}");

@@ -5,8 +5,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::plan::IndicatorPlan;
-use super::ratio::Pair;
+use super::ratio::{Modulation, Pair};
 use crate::lab::LabError;
+use crate::lab::deviate::normal_deviates;
 use crate::lab::ensemble::{Photographs, Spread};
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
@@ -87,7 +88,7 @@ pub(super) fn pairs(plan: &IndicatorPlan) -> Vec<(Method, f64)> {
     plan.methods.iter().flat_map(noises).collect()
 }
 
-/// Every method at every noise on one model, in the order of [`pairs`].
+/// Every method at every noise on one model, in the order of [`pairs`], measured on the same draws.
 ///
 /// # Errors
 /// [`LabError::Stopped`].
@@ -97,30 +98,64 @@ pub(super) fn compared(
     control: Control<'_>,
 ) -> Result<Vec<NoisyOutcome>, LabError> {
     let exact = model.phi();
-    pairs(plan)
-        .par_iter()
-        .map(
-            |&(method, noise)| match compare(model, &exact, (method, noise), plan, control) {
-                Err(LabError::Recovery(e)) => Ok(NoisyOutcome::Failed {
-                    reason: e.to_string(),
-                }),
-                other => other,
-            },
-        )
-        .collect()
+    let predicted = pairs(plan)
+        .into_par_iter()
+        .map(|pair| Ok(kept(predict(model, &exact, pair, plan))?.and_then(|found| found)))
+        .collect::<Result<Vec<_>, LabError>>()?;
+    let draws = (0..plan.seeds)
+        .into_par_iter()
+        .map(|k| {
+            control.check()?;
+            let seed = plan.first_seed.wrapping_add(k);
+            let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
+            let of = |own: &Result<Prediction, NoisyOutcome>| match own {
+                Ok(own) => kept(own.drawn(model, &exact, &deviates)),
+                Err(_) => Ok(Ok(None)),
+            };
+            predicted.iter().map(of).collect()
+        })
+        .collect::<Result<Vec<Vec<_>>, LabError>>()?;
+    let measured = |(at, own): (usize, Result<Prediction, NoisyOutcome>)| {
+        let values = draws.iter().filter_map(|draw| draw[at].clone().transpose());
+        let values: Result<Vec<f64>, NoisyOutcome> = values.collect();
+        Ok(own?.measured(&values?, plan.seeds))
+    };
+    let outcomes = predicted.into_iter().enumerate().map(measured);
+    let either = |found: Result<_, NoisyOutcome>| found.unwrap_or_else(|why| why);
+    Ok(outcomes.map(either).collect())
 }
 
-fn compare(
+/// A recovery that failed is an outcome of its own.
+fn kept<T>(found: Result<T, LabError>) -> Result<Result<T, NoisyOutcome>, LabError> {
+    match found {
+        Err(LabError::Recovery(e)) => Ok(Err(NoisyOutcome::Failed {
+            reason: e.to_string(),
+        })),
+        other => other.map(Ok),
+    }
+}
+
+/// What the draws are held against.
+struct Prediction {
+    method: Method,
+    noise: f64,
+    /// Its parameter is held, and of the draws the reflectances alone are asked for.
+    options: Options,
+    pair: Pair,
+    predicted: Modulation,
+}
+
+/// What is predicted of a method at a noise, or why nothing is.
+fn predict(
     model: &MatrixModel,
     exact: &Matrix,
     (method, noise): (Method, f64),
     plan: &IndicatorPlan,
-    control: Control<'_>,
-) -> Result<NoisyOutcome, LabError> {
-    let photographs = |seed| Photographs::relative(exact, noise, seed);
+) -> Result<Result<Prediction, NoisyOutcome>, LabError> {
     // A parameter that is chosen from the data makes a method non-linear: one draw outside the
     // sample fixes it.
-    let pilot = photographs(plan.first_seed.wrapping_add(plan.seeds));
+    let outside = plan.first_seed.wrapping_add(plan.seeds);
+    let pilot = Photographs::relative(exact, noise, outside);
     let options = fixed(&pilot.recover(model, method, &Options::default())?);
     let noiseless = Photographs {
         phi: exact.clone(),
@@ -128,39 +163,56 @@ fn compare(
     };
     let found = noiseless.recover(model, method, &options)?;
     let Some(covariance) = &found.covariance else {
-        return Ok(NoisyOutcome::NoCovariance);
+        return Ok(Err(NoisyOutcome::NoCovariance));
     };
-    let truth = &model.albedo;
-    let Some(pair) = Pair::of(found.reflectance.as_slice(), covariance, truth) else {
-        return Ok(NoisyOutcome::NoCovariance);
+    let Some(pair) = Pair::of(found.reflectance.as_slice(), covariance, &model.albedo) else {
+        return Ok(Err(NoisyOutcome::NoCovariance));
     };
-    let spread = pair.spread();
     let Some(predicted) = pair.modulation() else {
-        return Ok(NoisyOutcome::Undefined { spread });
+        let spread = pair.spread();
+        return Ok(Err(NoisyOutcome::Undefined { spread }));
     };
-    // Of the draws the reflectances alone are measured.
-    let options = Options {
-        uncertainty: Uncertainty::StandardError,
-        ..options
-    };
-    let mut values = Vec::new();
-    for seed in (0..plan.seeds).map(|k| plan.first_seed.wrapping_add(k)) {
-        control.check()?;
-        let found = photographs(seed).recover(model, method, &options)?;
-        values.extend(mtf_raw(found.reflectance.as_slice(), truth));
-    }
-    let measured = Spread::of(&values).filter(|m| m.draws as u64 == plan.seeds);
-    let Some((measured, stderr)) = measured.and_then(|m| Some((m, m.stderr?))) else {
-        return Ok(NoisyOutcome::Undefined { spread });
-    };
-    Ok(NoisyOutcome::Compared(Comparison {
-        kept: pair.means[0] / pair.means[1],
-        mean: predicted.mean,
-        deviation: predicted.deviation,
-        spread,
-        measured,
-        z: (measured.mean - predicted.mean) / stderr,
+    Ok(Ok(Prediction {
+        method,
+        noise,
+        options: Options {
+            uncertainty: Uncertainty::StandardError,
+            ..options
+        },
+        pair,
+        predicted,
     }))
+}
+
+impl Prediction {
+    /// The raw MTF of one draw, where it is defined.
+    fn drawn(
+        &self,
+        model: &MatrixModel,
+        exact: &Matrix,
+        deviates: &Matrix,
+    ) -> Result<Option<f64>, LabError> {
+        let photographs = Photographs::of_deviates(exact, self.noise, deviates);
+        let found = photographs.recover(model, self.method, &self.options)?;
+        Ok(mtf_raw(found.reflectance.as_slice(), &model.albedo))
+    }
+
+    /// Against the raw MTF of so many draws.
+    fn measured(&self, values: &[f64], draws: u64) -> NoisyOutcome {
+        let spread = self.pair.spread();
+        let measured = Spread::of(values).filter(|m| m.draws as u64 == draws);
+        let Some((measured, stderr)) = measured.and_then(|m| Some((m, m.stderr?))) else {
+            return NoisyOutcome::Undefined { spread };
+        };
+        NoisyOutcome::Compared(Comparison {
+            kept: self.pair.means[0] / self.pair.means[1],
+            mean: self.predicted.mean,
+            deviation: self.predicted.deviation,
+            spread,
+            measured,
+            z: (measured.mean - self.predicted.mean) / stderr,
+        })
+    }
 }
 
 /// Options that hold the parameter that `pilot` has chosen.
@@ -180,7 +232,6 @@ fn fixed(pilot: &Recovered) -> Options {
 mod tests {
     use super::super::tests::small_plan;
     use super::*;
-    use crate::lab::deviate::normal_deviates;
     use crate::model::Kernel;
     use crate::recovery::{Problem, recover};
     use crate::scene::Scene;
