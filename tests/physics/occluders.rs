@@ -11,9 +11,20 @@ use phicam::recovery::{Method, Nuisance, Options};
 use phicam::scene::Scene;
 use phicam::transport::{Control, Estimator};
 
-/// The scene `periscope` with other occluders in place of its plate.
+/// The scene `periscope` with other occluders in place of its plate, and the middle quarter of its
+/// view.
 fn past(occluders: &str) -> Scene {
-    let text = builtin("periscope", &[]).text;
+    let text = builtin(
+        "periscope",
+        &[
+            ("pixels = [32, 32]", "pixels = [16, 16]"),
+            (
+                "x = [3.25, 6.5], y = [2.75, 6.0]",
+                "x = [4.0625, 5.6875], y = [3.5625, 5.1875]",
+            ),
+        ],
+    )
+    .text;
     let (bare, _) = text.split_once("[[surface]]\nname = \"plate\"").unwrap();
     Scene::from_toml("past", &format!("{bare}{occluders}")).unwrap()
 }

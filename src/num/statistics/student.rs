@@ -41,15 +41,17 @@ pub fn student_threshold(z: f64, dof: f64) -> f64 {
         high *= 2.0;
     }
     let mut low = 0.0;
-    for _ in 0..200 {
+    loop {
         let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break high;
+        }
         if student_to_normal(middle, dof) < z {
             low = middle;
         } else {
             high = middle;
         }
     }
-    high
 }
 
 /// Hill (1970), Algorithm 395: with a = ν − ½, b = 48 a², y = a ln(1 + t²/ν),
