@@ -12,6 +12,7 @@ use super::output;
 use super::preview;
 use super::suspicious::dark;
 use crate::jobs::need;
+use crate::lab::from_wall_to_wall;
 use crate::report;
 use crate::scene::{Builtin, Role, Scene, builtins};
 
@@ -107,9 +108,13 @@ fn checked(given: &str, scene: &Scene) -> Result<String, Failure> {
     }))
 }
 
-/// What is suspicious, also in what a few samples find.
+/// What is suspicious, also in what the model lacks and in what a few samples find.
 fn suspicious(scene: &Scene) -> Result<Vec<String>, Failure> {
     let mut found: Vec<String> = scene.warnings().iter().map(ToString::to_string).collect();
+    if scene.hidden().next().is_some() {
+        let lacks = |light| format!("frames hold what no model or recovery has: {light}");
+        found.extend(from_wall_to_wall(scene).into_iter().map(lacks));
+    }
     found.extend(dark(scene)?.map(|dark| dark.to_string()));
     Ok(found)
 }

@@ -281,5 +281,5 @@ pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
 pub use unexplained::{Photographs, Unexplained, fewer};
-pub use unmodelled::unmodelled;
+pub use unmodelled::{from_wall_to_wall, unmodelled};
 pub use validation::{Against, Integration, Validation, validate};

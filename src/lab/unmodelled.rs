@@ -27,21 +27,7 @@ pub fn unmodelled(scene: &Scene) -> Vec<String> {
         })
         .map(ToString::to_string)
         .collect();
-    let seen = seen(scene);
-    let lit = spots_that_light_the_view(scene, &seen);
-    if lit > 0 && scene.max_bounces > 1 {
-        found.push(format!(
-            "light of two bounces, from {lit} of {} spots straight to the part of the wall that is seen",
-            scene.laser.spots.len()
-        ));
-    }
-    let between = walls_that_light_the_view(scene, &seen);
-    if !between.is_empty() && scene.max_bounces >= MODELLED {
-        found.push(format!(
-            "light of three bounces that {} sends from the spots to the part of the wall that is seen",
-            between.join(", ")
-        ));
-    }
+    found.extend(from_wall_to_wall(scene));
     let occluders = scene.surfaces.iter().filter(|s| s.role == Role::Occluder);
     let reflecting: Vec<String> = occluders
         .filter(|s| !s.is_black())
@@ -58,6 +44,28 @@ pub fn unmodelled(scene: &Scene) -> Vec<String> {
             first if first == scene.max_bounces => format!("light of {first} bounces"),
             first => format!("light of {first} to {} bounces", scene.max_bounces),
         });
+    }
+    found
+}
+
+/// Light that goes from a wall to a wall, as far as frames hold it, in words: of one that is
+/// curved, or of walls that meet.
+pub fn from_wall_to_wall(scene: &Scene) -> Vec<String> {
+    let mut found = Vec::new();
+    let seen = seen(scene);
+    let lit = spots_that_light_the_view(scene, &seen);
+    if lit > 0 && scene.max_bounces > 1 {
+        found.push(format!(
+            "light of two bounces, from {lit} of {} spots straight to the part of the wall that is seen",
+            scene.laser.spots.len()
+        ));
+    }
+    let between = walls_that_light_the_view(scene, &seen);
+    if !between.is_empty() && scene.max_bounces >= MODELLED {
+        found.push(format!(
+            "light of three bounces that {} sends from the spots to the part of the wall that is seen",
+            between.join(", ")
+        ));
     }
     found
 }

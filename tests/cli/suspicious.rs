@@ -56,6 +56,29 @@ fn a_dark_scene_is_told() {
     }
 }
 
+/// A wall at right angles to the first sends light of its spots to the part that the camera sees,
+/// which no model has; turned about, it faces neither.
+#[test]
+fn light_from_wall_to_wall_is_told() {
+    let wall = |u: &str, v: &str| {
+        format!(
+            "[[surface]]\nname = \"side\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
+             rectangle = {{ corner = [13, -4, 0], u = {u}, v = {v} }}\n"
+        )
+    };
+    let checked = |wall: &str| {
+        let workspace = Workspace::new();
+        workspace.write("walls.toml", altered(&TINY[..2]) + "\n" + wall);
+        workspace.phicam("scene check walls.toml").exits(0).stdout
+    };
+    let words = "no model or recovery has: light of three bounces that `side` sends";
+    let facing = checked(&wall("[0, 0, 8]", "[0, 19.5, 0]"));
+    assert!(facing.contains(words), "{facing}");
+    let away = checked(&wall("[0, 19.5, 0]", "[0, 0, 8]"));
+    assert!(!away.contains("no model or recovery has"), "{away}");
+    assert!(!checked("").contains("no model or recovery has"));
+}
+
 /// An OBJ that names a material library: its colours are not used, and how else an albedo is given
 /// is said; the same file without that line is not suspicious.
 #[test]
