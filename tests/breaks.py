@@ -2410,6 +2410,24 @@ BREAKS = [
         "photographs::plane::tests::the_mean_of_colours_is_that_of_their_light",
         23,
     ),
+    Break(
+        "Light that goes from wall to wall is told by `scene check`",
+        "src/cli/scene.rs",
+        "if scene.hidden().next().is_some() {\n        let lacks",
+        "if scene.hidden().next().is_none() {\n        let lacks",
+        "cli",
+        "suspicious::light_from_wall_to_wall_is_told",
+        25,
+    ),
+    Break(
+        "Of the draws of the indicator each method and noise has its own",
+        "src/lab/indicator/noisy.rs",
+        "draw[at].clone().transpose()",
+        "draw[at / 2].clone().transpose()",
+        "physics",
+        "indicator::the_mean_under_noise_is_predicted_for_linear_methods",
+        25,
+    ),
 ]
 
 
