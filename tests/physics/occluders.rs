@@ -11,20 +11,12 @@ use phicam::recovery::{Method, Nuisance, Options};
 use phicam::scene::Scene;
 use phicam::transport::{Control, Estimator};
 
-/// The scene `periscope` with other occluders in place of its plate, and the middle quarter of its
-/// view.
-fn past(occluders: &str) -> Scene {
-    let text = builtin(
-        "periscope",
-        &[
-            ("pixels = [32, 32]", "pixels = [16, 16]"),
-            (
-                "x = [3.25, 6.5], y = [2.75, 6.0]",
-                "x = [4.0625, 5.6875], y = [3.5625, 5.1875]",
-            ),
-        ],
-    )
-    .text;
+/// A quarter of the pixels of `periscope`, each four times as large.
+const COARSE: [(&str, &str); 1] = [("pixels = [32, 32]", "pixels = [16, 16]")];
+
+/// The scene `periscope`, changed, with other occluders in place of its plate.
+fn past(occluders: &str, changes: &[(&str, &str)]) -> Scene {
+    let text = builtin("periscope", changes).text;
     let (bare, _) = text.split_once("[[surface]]\nname = \"plate\"").unwrap();
     Scene::from_toml("past", &format!("{bare}{occluders}")).unwrap()
 }
@@ -63,7 +55,7 @@ fn the_model_sees_past_what_the_tracer_sees_past() {
         ("mesh", surface("ball", ball), 1e-3),
     ];
     for (name, occluders, most) in cases {
-        let scene = past(&occluders);
+        let scene = past(&occluders, &COARSE);
         let way = Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 17);
         let traced = trace(&scene, way);
         let measured = Measured::new(&traced.flux, &traced.stderr, Some(&traced.tails));
@@ -129,7 +121,7 @@ fn an_occluders_light_is_estimated_with_the_picture() {
     ];
     for (name, shape) in cases {
         let grey = surface(name, &shape).replace("lambertian = 0.0", "lambertian = 0.6");
-        let scene = past(&grey);
+        let scene = past(&grey, &[]);
         let traced = trace(
             &scene,
             Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 15),
@@ -171,5 +163,5 @@ fn an_occluders_light_is_estimated_with_the_picture() {
             "{name}: {albedo:?}"
         );
     }
-    assert!(past("").with_occluders_as_elements().is_err());
+    assert!(past("", &[]).with_occluders_as_elements().is_err());
 }
