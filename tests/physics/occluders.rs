@@ -89,10 +89,10 @@ fn a_mask_along_the_elements_is_modelled_to_a_thousandth() {
     let scene = builtin(
         "masked-card",
         &[
-            ("pixels = [32, 32]", "pixels = [18, 18]"),
+            ("pixels = [32, 32]", "pixels = [36, 36]"),
             (
                 "x = [3.25, 6.5], y = [2.75, 6.0]",
-                "x = [4.0, 4.914], y = [3.0, 3.914]",
+                "x = [4.0, 5.828], y = [3.0, 4.828]",
             ),
             ("per_side = 25", "per_side = 2"),
         ],
