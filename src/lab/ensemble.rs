@@ -40,19 +40,17 @@ impl Photographs {
     /// Φcam with each entry times 1 + σ·N(0, 1), σ = `noise`. One seed gives the same deviates at
     /// every σ, so that methods, levels and objects are compared under the same draw.
     pub(super) fn relative(exact: &Matrix, noise: f64, seed: u64) -> Self {
-        let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
-        Self::of_deviates(exact, noise, &deviates)
-    }
-
-    /// The same of deviates that were drawn before.
-    pub(super) fn of_deviates(exact: &Matrix, noise: f64, deviates: &Matrix) -> Self {
-        let stderr = exact.map(|x| noise * x.abs());
-        Self::told(exact + deviates.component_mul(&stderr), stderr)
+        Self::drawn(exact, exact.map(|x| noise * x.abs()), seed)
     }
 
     /// Φcam with a normal deviate of each entry's standard error added.
     pub(super) fn drawn(exact: &Matrix, stderr: Matrix, seed: u64) -> Self {
         let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
+        Self::of_deviates(exact, stderr, &deviates)
+    }
+
+    /// The same of deviates that were drawn before.
+    pub(super) fn of_deviates(exact: &Matrix, stderr: Matrix, deviates: &Matrix) -> Self {
         Self::told(exact + deviates.component_mul(&stderr), stderr)
     }
 

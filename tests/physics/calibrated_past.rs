@@ -95,17 +95,15 @@ fn a_plate_is_found_with_the_board_behind_it() {
         let (pixels, spots) = taken.flux.shape();
         let left_out = Matrix::from_iterator(pixels, spots, flags);
         let photographs = [&taken.flux, &taken.stderr, &left_out];
-        let free = |sigma: Option<f64>| {
-            let of = move |(name, _): &(&str, f64)| Free {
-                name: (*name).to_owned(),
-                sigma,
-            };
-            UNKNOWN.iter().map(of)
+        let free = |name: &str, sigma| Free {
+            name: name.to_owned(),
+            sigma,
         };
-        let own = calibrated(&assumed, photographs, free(None).collect());
+        let unknown = UNKNOWN.map(|(name, _)| free(name, None));
+        let own = calibrated(&assumed, photographs, unknown.into());
         // The right geometry is held by one parameter that is known.
-        let known = free(Some(1e-6)).take(1).collect();
-        let right = calibrated(&there, photographs, known);
+        let known = free(UNKNOWN[0].0, Some(1e-6));
+        let right = calibrated(&there, photographs, vec![known]);
         assert!(own.is_found() && own.p.unwrap() > 1e-3, "{seed}: {own:?}");
         for (found, truth) in own.found.iter().zip(&truth) {
             let off = (found.value - truth) / found.stderr;

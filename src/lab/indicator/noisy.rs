@@ -138,7 +138,8 @@ fn kept<T>(found: Result<T, LabError>) -> Result<Result<T, NoisyOutcome>, LabErr
 /// What the draws are held against.
 struct Prediction {
     method: Method,
-    noise: f64,
+    /// Standard errors of the photographs, W.
+    stderr: Matrix,
     /// Its parameter is held, and of the draws the reflectances alone are asked for.
     options: Options,
     pair: Pair,
@@ -174,7 +175,7 @@ fn predict(
     };
     Ok(Ok(Prediction {
         method,
-        noise,
+        stderr: noiseless.stderr,
         options: Options {
             uncertainty: Uncertainty::StandardError,
             ..options
@@ -192,7 +193,7 @@ impl Prediction {
         exact: &Matrix,
         deviates: &Matrix,
     ) -> Result<Option<f64>, LabError> {
-        let photographs = Photographs::of_deviates(exact, self.noise, deviates);
+        let photographs = Photographs::of_deviates(exact, self.stderr.clone(), deviates);
         let found = photographs.recover(model, self.method, &self.options)?;
         Ok(mtf_raw(found.reflectance.as_slice(), &model.albedo))
     }
