@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
+use crate::num::statistics::squares_or_largest;
 
 /// Relative deviations of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,17 +33,12 @@ impl Deviations {
     }
 
     /// Probability of as large a Σ ε̂²/σ², or of as large an |ε̂|/σ, if the factors are as they
-    /// were said to be: twice the smaller of that of χ² with as many degrees of freedom as factors
-    /// are determined, which is its mean, and of the largest of as many normal numbers. None where
-    /// less than one is.
+    /// were said to be, with as many degrees of freedom as factors are determined, which is the
+    /// mean of the sum. None where less than one is.
     pub fn probability(&self) -> Option<f64> {
         let freedom = self.freedom();
         let chi2 = self.size.norm_squared() / (self.known_to * self.known_to);
-        (freedom >= 1.0).then(|| {
-            let whole = chi_square_sf(chi2, freedom);
-            let largest = sidak_p(normal_two_sided(self.largest()), freedom.ceil() as u64);
-            (2.0 * whole.min(largest)).min(1.0)
-        })
+        (freedom >= 1.0).then(|| squares_or_largest(chi2, self.largest(), freedom))
     }
 }
 

@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::Calibrated;
 use crate::matrix::Matrix;
 use crate::num::linalg::svd;
-use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p};
+use crate::num::statistics::squares_or_largest;
 
 /// Of a direction's variance what the photographs must tell, for it to count: where that is less,
 /// S is a small difference of numbers that hold to first order.
@@ -30,7 +30,7 @@ pub struct Beforehand {
     pub directions: usize,
     /// The largest deviation along one of them, in its expected scatter.
     pub largest: f64,
-    /// Probability of as large a sum or of as large a deviation: twice the smaller one.
+    /// Probability of as large a sum or of as large a deviation.
     pub p: f64,
 }
 
@@ -66,11 +66,7 @@ impl Beforehand {
             chi2,
             directions,
             largest,
-            p: {
-                let whole = chi_square_sf(chi2, directions as f64);
-                let one = sidak_p(normal_two_sided(largest), directions as u64);
-                (2.0 * whole.min(one)).min(1.0)
-            },
+            p: squares_or_largest(chi2, largest, directions as f64),
         })
     }
 }

@@ -1,8 +1,9 @@
-//! Šidák's correction: the significance of the largest of many.
+//! The significance of many numbers together: of the largest (Šidák), and of their squares beside it.
 
 use std::f64::consts::LN_2;
 
 use super::normal::from_log_upper_tail;
+use super::{chi_square_sf, normal_two_sided};
 
 /// Probability that the smallest of n independent p-values is at most `p` by chance: 1 − (1 − p)ⁿ,
 /// without cancellation. NaN where p is not in [0, 1].
@@ -34,9 +35,16 @@ pub fn sidak_threshold(alpha: f64, n: u64) -> f64 {
     from_log_upper_tail(libm::log(each) - LN_2)
 }
 
+/// Probability that as many standard normal numbers as `freedom` have as large a sum of squares or
+/// as large a largest: twice the smaller of that of χ² and of Šidák's (Bonferroni).
+pub fn squares_or_largest(chi2: f64, largest: f64, freedom: f64) -> f64 {
+    let whole = chi_square_sf(chi2, freedom);
+    let one = sidak_p(normal_two_sided(largest), freedom.ceil() as u64);
+    (2.0 * whole.min(one)).min(1.0)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::normal_two_sided;
     use super::*;
 
     #[test]

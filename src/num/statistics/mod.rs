@@ -15,7 +15,7 @@ pub use binomial::binomial_interval;
 pub(super) use chi_square::excess;
 pub use chi_square::{chi_square_quantile, chi_square_sf};
 pub use correlation::correlation_two_sided;
-pub use family::{sidak_p, sidak_threshold};
+pub use family::{sidak_p, sidak_threshold, squares_or_largest};
 pub use fisher::fisher_sf;
 pub use gamma::{freedom_of_log_variance, pentagamma, trigamma};
 pub use median::median;
