@@ -109,13 +109,6 @@ impl Bvh {
         best
     }
 
-    /// Where `ray` meets this one shape.
-    pub fn hit(&self, ray: &Ray, shape: ShapeId) -> Option<Hit> {
-        let met = self.shapes[shape as usize].intersect(ray, false)?;
-        let Intersection { t, triangle } = met;
-        Some(Hit { shape, t, triangle })
-    }
-
     /// The point that the ray hits, exactly on its shape.
     pub fn point(&self, ray: &Ray, hit: Hit) -> Interaction {
         let Hit { shape, t, triangle } = hit;

@@ -14,8 +14,6 @@ pub(super) struct Beams<'a> {
     pub scene: &'a Scene,
     /// By spot, if beams have no width: where its light lands.
     pub ideal: Vec<Option<Vertex>>,
-    /// By spot, if beams have width: the shape that all samples of its light land on, if known.
-    landing: Vec<Option<ShapeId>>,
     /// Points of the surface that shines, by the brightness of its cells.
     bright: Option<AreaSampler>,
 }
@@ -36,16 +34,12 @@ impl<'a> Beams<'a> {
         let mut beams = Self {
             scene,
             ideal: Vec::new(),
-            landing: Vec::new(),
             bright: scene
                 .shining()
                 .map(|(id, _)| AreaSampler::new(scene, &[id])),
         };
-        let spots = 0..scene.laser.spots.len();
-        if beams.has_width() {
-            let certain = |spot| beams.surely_lands_on(spot, Reach::Samples);
-            beams.landing = spots.map(certain).collect();
-        } else {
+        if !beams.has_width() {
+            let spots = 0..scene.laser.spots.len();
             beams.ideal = spots.map(|spot| beams.ideal_point(spot)).collect();
         }
         beams
@@ -127,7 +121,7 @@ impl<'a> Beams<'a> {
                 let end = |p: &Vertex| (p.shape, Some(Region::point(p.position)));
                 lit.iter().map(end).collect()
             }
-            None => match self.landing[spot] {
+            None => match self.surely_lands_on(spot, Reach::Samples) {
                 Some(id) => {
                     let square = self.square(spot, Reach::Samples);
                     vec![(id, square.as_ref().map(Region::patch))]
@@ -140,7 +134,10 @@ impl<'a> Beams<'a> {
     /// Shapes on which the light of any spot of the scene may land.
     pub(super) fn lit_shapes(&self) -> Vec<ShapeId> {
         let known: Option<Vec<ShapeId>> = if self.has_width() {
-            self.landing.iter().copied().collect()
+            let spots = 0..self.scene.laser.spots.len();
+            spots
+                .map(|spot| self.surely_lands_on(spot, Reach::Samples))
+                .collect()
         } else {
             Some(self.ideal.iter().flatten().map(|p| p.shape).collect())
         };
@@ -183,8 +180,7 @@ impl<'a> Beams<'a> {
         };
         let target = &self.scene.laser.spots[spot].target;
         let [x, y] = offset.map(|c| c * radius);
-        let aim = target.position + Basis::around(target.normal).to_world([x, y, 0.0]);
-        self.land(aim, self.landing[spot])
+        self.land(target.position + Basis::around(target.normal).to_world([x, y, 0.0]))
     }
 
     /// A point of what shines in a column, by the brightness of its cells. With p the density there
@@ -246,21 +242,18 @@ impl<'a> Beams<'a> {
         let target = &spot.target;
         let ray = Ray::between(self.scene.laser.position, target.position)?;
         if self.scene.bvh().blocked(&ray, [None, Some(spot.surface)]) {
-            return self.land(target.position, None);
+            return self.land(target.position);
         }
         Vertex::arrive(self.scene, spot.surface, target, ray.direction, 1.0)
     }
 
-    /// First hit of the ray from the laser through `aim`, which `certain` is asked for first.
-    fn land(&self, aim: DVec3, certain: Option<ShapeId>) -> Option<Vertex> {
+    /// First hit of the ray from the laser through `aim`.
+    fn land(&self, aim: DVec3) -> Option<Vertex> {
         let from = self.scene.laser.position;
         let direction = (aim - from).try_normalize()?;
         let ray = Ray::new(from, direction);
-        let bvh = self.scene.bvh();
-        let hit = certain
-            .and_then(|id| bvh.hit(&ray, id))
-            .or_else(|| bvh.closest(&ray, None))?;
-        let point = bvh.point(&ray, hit);
+        let hit = self.scene.bvh().closest(&ray, None)?;
+        let point = self.scene.bvh().point(&ray, hit);
         Vertex::arrive(self.scene, hit.shape, &point, direction, 1.0)
     }
 }

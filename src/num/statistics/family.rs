@@ -1,4 +1,4 @@
-//! The significance of many numbers together: of the largest (Šidák), and of their squares beside it.
+//! The significance of many numbers together: of the largest (Šidák), and of their squares with it.
 
 use std::f64::consts::LN_2;
 
