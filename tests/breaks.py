@@ -796,7 +796,7 @@ BREAKS = [
         "(Shape::Instance(body), Division::Cells) if !body.is_exact_patch() => {",
         "(Shape::Instance(body), Division::Cells) if body.area() > 0.0 => {",
         "physics",
-        "meshes::a_mesh_of_the_rectangle_has_its_truth_model_and_recovery",
+        "meshes::textured::a_mesh_of_the_rectangle_has_its_truth_model_and_recovery",
         4,
     ),
     Break(
@@ -805,7 +805,7 @@ BREAKS = [
         "        area: area * share,\n",
         "        area: 1.0003 * area * share,\n",
         "physics",
-        "meshes::a_textured_sphere_is_integrated_within_its_bound",
+        "meshes::textured::a_textured_sphere_is_integrated_within_its_bound",
         8,
     ),
     Break(
@@ -814,7 +814,7 @@ BREAKS = [
         "    if is_convex(&outline) {",
         "    if is_convex(&outline) || size > 0.0 {",
         "physics",
-        "meshes::a_concave_face_has_its_light_whatever_its_first_corner",
+        "meshes::faces::a_concave_face_has_its_light_whatever_its_first_corner",
         5,
     ),
     Break(
@@ -823,7 +823,7 @@ BREAKS = [
         "*others |= tile != piece.tile;",
         "*others |= tile != piece.tile && false;",
         "physics",
-        "meshes::coordinates_over_several_tiles",
+        "meshes::faces::coordinates_over_several_tiles",
         6,
     ),
     Break(
@@ -1192,7 +1192,7 @@ BREAKS = [
         "let mean = -common * square(nuisance.scale_error);",
         "let mean = -0.0 * common * square(nuisance.scale_error);",
         "lib",
-        "recovery::joint::gauss_newton::tests::a_factor_of_all_is_averaged_over_not_fitted_with_the_picture",
+        "recovery::joint::gauss_newton::tests::of_all::a_factor_of_all_is_averaged_over_not_fitted_with_the_picture",
         10,
     ),
     Break(
@@ -1201,7 +1201,7 @@ BREAKS = [
         "let frame_mean = &frames * -square(nuisance.frame_gain);",
         "let frame_mean = &frames * -0.0 * square(nuisance.frame_gain);",
         "lib",
-        "recovery::joint::gauss_newton::tests::factors_of_frames_do_not_lessen_the_picture",
+        "recovery::joint::gauss_newton::tests::of_all::factors_of_frames_do_not_lessen_the_picture",
         10,
     ),
     Break(
@@ -1867,7 +1867,7 @@ BREAKS = [
         "found.standard_error = None;",
         "",
         "lib",
-        "recovery::joint::gauss_newton::tests::gains_of_a_refuted_pattern_leave_no_errors",
+        "recovery::joint::gauss_newton::tests::every_method::gains_of_a_refuted_pattern_leave_no_errors",
         14,
     ),
     Break(
@@ -2335,7 +2335,7 @@ BREAKS = [
         "Method::JointTv => settle(Method::Joint, &mut at)?.0,",
         "Method::JointTv => 0,",
         "lib",
-        "recovery::joint::gauss_newton::tests::large_factors_are_not_taken_for_understated_noise",
+        "recovery::joint::gauss_newton::tests::every_method::large_factors_are_not_taken_for_understated_noise",
         22,
     ),
     Break(
