@@ -194,6 +194,10 @@ const MISTAKES: &[(&str, &[&str])] = &[
         &["camera.pixels", "KEY=VALUE"],
     ),
     (
+        "run tiny.toml -o new --also-read absent",
+        &["'absent'", "--also-read", "no such folder"],
+    ),
+    (
         "run tiny.toml -o new -D camera.pixels=4",
         &["pixels", "2 whole numbers"],
     ),

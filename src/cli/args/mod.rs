@@ -29,7 +29,7 @@ use super::failure::Codes;
 use crate::lab::Integration;
 use crate::model::Kernel;
 use terms::explained;
-use value::{definition, elements, spot_range};
+use value::{definition, elements, folder, spot_range};
 
 pub(in crate::cli) use beside::BesideArgs;
 pub(in crate::cli) use calibrate::CalibrateArgs;
@@ -61,7 +61,7 @@ pub(in crate::cli) struct Args {
     pub quiet: bool,
     /// Let scenes read meshes, pictures and materials in this folder too, not only beside the scene
     /// file; may be given several times
-    #[arg(long, value_name = "DIR", global = true)]
+    #[arg(long, value_name = "DIR", global = true, value_parser = folder())]
     pub also_read: Vec<PathBuf>,
     /// Another value of a key of the scene, e.g. camera.pixels=[32,32], laser.power=5mW or
     /// surface.wall.material.lambertian=0.5; may be given several times

@@ -1,9 +1,22 @@
 //! Values with a grammar of their own.
 
 use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::num::decimal::Decimal;
 use crate::scene::{Dimension, Unit, quoted};
+
+/// A folder that is there.
+pub(super) fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| {
+        let there = path.is_dir();
+        there
+            .then_some(path)
+            .ok_or("there is no such folder: check the name, it is relative to where you are")
+    })
+}
 
 /// A whole number, 0 or more, as 10000 or 1e4.
 pub(super) fn whole(text: &str) -> Result<u64, String> {
