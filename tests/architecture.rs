@@ -408,6 +408,32 @@ fn transcendental_functions_are_the_portable_ones() {
     }
 }
 
+/// Names with versions of the crates in a lock file.
+fn locked(file: &str) -> Vec<(String, String)> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    let table: toml::Table = text.parse().unwrap();
+    let of = |package: &toml::Value, key: &str| package[key].as_str().unwrap().to_owned();
+    let packages = table["package"].as_array().unwrap().iter();
+    packages
+        .map(|package| (of(package, "name"), of(package, "version")))
+        .collect()
+}
+
+/// The Python module and the fuzzers have lock files of their own. What they share with the command
+/// has its versions there: the same seed gives the same bytes in Python.
+#[test]
+fn all_are_built_from_the_same_versions() {
+    let own = locked("Cargo.lock");
+    assert!(own.iter().any(|(name, _)| name == "rand_pcg"));
+    for file in ["python/Cargo.lock", "tests/fuzz/Cargo.lock"] {
+        for found in locked(file) {
+            let is_shared = own.iter().any(|(name, _)| *name == found.0);
+            assert!(!is_shared || own.contains(&found), "{file}: {found:?}");
+        }
+    }
+}
+
 /// The identifiers and marks of a source; `::` is one mark.
 fn tokens(code: &str) -> Vec<&str> {
     let mut found = Vec::new();
