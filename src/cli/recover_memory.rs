@@ -215,6 +215,7 @@ impl Strips<'_> {
             left_over: None,
             fit: residuals.fit(found.freedom_used(), self.certainty),
             best: None,
+            none_possible: None,
             determined: None,
             certainty: Some(self.certainty),
             moved: None,

@@ -15,7 +15,7 @@ use errors::{
     DETERMINED, HALF, alike_untold, between_neighbours, by_entries, few_replicates, integrated,
     overstated, shared, undetermined, uneven, unseen,
 };
-use misfit::{misfit, outlier};
+use misfit::{misfit, none_possible, outlier};
 
 /// More than this share of the elements is most of them.
 const MOST: f64 = 0.5;
@@ -36,6 +36,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
     let every = [
         outlier(judged),
         misfit(found, judged),
+        none_possible(judged),
         contested(found.method, judged),
         unjudged(found, judged),
         shared(judged),

@@ -33,7 +33,7 @@ use nalgebra::DVector;
 use super::certainty::Certainty;
 use crate::matrix::Matrix;
 use crate::model::Factors;
-use crate::recovery::{Determined, Method, Options, Problem, Recovered, determined};
+use crate::recovery::{Determined, Method, Options, Problem, Recovered, RecoveryError, determined};
 pub use attainable::Attainable;
 use attainable::LeftOver;
 pub(super) use attainable::ROUGH;
@@ -155,6 +155,8 @@ pub struct Judged {
     pub left_over: Option<LeftOver>,
     /// That of the best picture of all, where it is known.
     pub best: Option<Attainable>,
+    /// Why no picture of reflectances between 0 and 1 was found, where one was looked for.
+    pub none_possible: Option<RecoveryError>,
     /// What the photographs determine of each element, where it is known.
     pub determined: Option<Determined>,
     /// What is known of the errors of the photographs; none where they are not.
@@ -181,15 +183,21 @@ impl Judged {
     ) -> Self {
         let few = problem.elements() <= MOST_DECOMPOSED && !found.is_empty();
         let two_valued = found.iter().any(|f| f.method == Method::JointTwoValued);
+        let known = noise.filter(|_| !found.is_empty());
+        let best = known.map(|noise| Attainable::of(problem, noise, found, options));
+        let (best, none_possible) = match best.transpose() {
+            Ok(best) => (best.flatten(), None),
+            Err(RecoveryError::Stopped(_)) => (None, None),
+            Err(error) => (None, Some(error)),
+        };
         Self {
             fit: None,
             left_over: match noise {
                 None if two_valued => LeftOver::of(problem, found, options),
                 _ => None,
             },
-            best: noise
-                .filter(|_| !found.is_empty())
-                .and_then(|noise| Attainable::of(problem, noise, found, options)),
+            best,
+            none_possible,
             determined: few.then(|| determined(problem).ok()).flatten(),
             certainty: noise.map(|known| known.certainty),
             moved: None,

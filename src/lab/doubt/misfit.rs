@@ -88,6 +88,15 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
     ))
 }
 
+/// A search for the best of all pictures that came to no end.
+pub(super) fn none_possible(judged: &Judged) -> Option<String> {
+    let error = judged.none_possible.as_ref()?;
+    Some(format!(
+        "whether any reflectances between 0 and 1 explain the photographs is NOT KNOWN: none were \
+         found ({error})"
+    ))
+}
+
 /// What helps where another picture fits.
 fn cure(method: Method) -> &'static str {
     match method {

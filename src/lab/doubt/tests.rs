@@ -505,3 +505,29 @@ fn a_free_scales_uncertain_unit_is_told() {
         assert!(uncertain || right(told(0)) && right(told(1)), "{found:?}");
     }
 }
+
+/// Dark less light, of a free scale: numbers explain it, no reflectances above 0 do, and where
+/// these were looked for and not found that is told beside a picture that fits.
+#[test]
+fn a_search_that_finds_no_possible_picture_is_told() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
+    let taken = Photographs::relative(&model.phi(), 1e-3, 3);
+    let nuisance = Nuisance {
+        free_scale: true,
+        ..Nuisance::default()
+    };
+    let (options, control) = (Options::default(), Control::none());
+    for (sign, told) in [(1.0, false), (-1.0, true)] {
+        // One number is above 0, for the scale to be that.
+        let mut phi = &taken.phi * sign;
+        let own = model.camera_side.column(0) * model.laser_side.row(0) * 0.2;
+        phi += own;
+        let noise = Noise::StandardError(&taken.stderr, Certainty::STATED);
+        let methods = [Method::JointUnbounded];
+        let found = recover_objects(&model, &phi, noise, nuisance, &methods, &options, control);
+        let object = &found[0].outcome.as_ref().unwrap()[0];
+        let warned = object.warnings.iter();
+        let warned = warned.filter(|w| w.contains("NOT KNOWN") || w.contains("DOES NOT FIT"));
+        assert_eq!(warned.count() > 0, told, "{sign}: {:?}", object.warnings);
+    }
+}

@@ -4,7 +4,9 @@ use super::{Certainty, Fit, Known, MOST_ELEMENTS, Residuals, fit};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::fisher_sf;
-use crate::recovery::{Method, Options, Problem, Recovered, WeightRule, Weighting, recover};
+use crate::recovery::{
+    Method, Options, Problem, Recovered, RecoveryError, WeightRule, Weighting, recover,
+};
 
 /// What the best picture of all can do: whether photographs and matrices belong together, whatever
 /// the method.
@@ -22,36 +24,41 @@ pub struct Attainable {
 impl Attainable {
     /// The best among what was `found` already, looked for where it is not there; none without a
     /// noise model, and where there are too many elements for a search that no one asked for.
+    ///
+    /// # Errors
+    /// Why no reflectances between 0 and 1 were found.
     pub(in crate::lab) fn of(
         problem: &Problem<'_>,
         noise: Known<'_>,
         found: &[&Recovered],
         options: &Options,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>, RecoveryError> {
         let weighted = options.weighting != WeightRule::Unweighted;
         let options = Options {
             bands: None,
             weighting: WeightRule::Noise,
             ..*options
         };
-        let by_noise = |method: Method| -> Option<(Fit, Weighting)> {
+        let by_noise = |method: Method| -> Result<Option<(Fit, Weighting)>, RecoveryError> {
+            let fitted = |found: &Recovered| Some((fit(problem, noise, found)?, found.weighting));
             let known = found.iter().find(|f| f.method == method);
             if let Some(known) = known.filter(|_| weighted) {
-                return Some((fit(problem, noise, known)?, known.weighting));
+                return Ok(fitted(known));
             }
             if problem.elements() > MOST_ELEMENTS {
-                return None;
+                return Ok(None);
             }
-            let searched = recover(method, problem, &options).ok()?;
-            Some((fit(problem, noise, &searched)?, searched.weighting))
+            Ok(fitted(&recover(method, problem, &options)?))
         };
         // Weights by pixel and by spot leave more over than the best picture does where errors are
         // no product of such.
-        let by = |method: Method| -> Option<Fit> {
-            let (found, weighting) = by_noise(method)?;
+        let by = |method: Method| -> Result<Option<Fit>, RecoveryError> {
+            let Some((found, weighting)) = by_noise(method)? else {
+                return Ok(None);
+            };
             let rough = matches!(weighting, Weighting::Separable { misfit } if misfit > ROUGH);
             if found.fits || !rough || problem.elements() > MOST_ELEMENTS {
-                return Some(found);
+                return Ok(Some(found));
             }
             let options = Options {
                 weighting: WeightRule::Entries,
@@ -59,15 +66,17 @@ impl Attainable {
             };
             let by_entries = recover(method, problem, &options).ok();
             let by_entries = by_entries.and_then(|own| fit(problem, noise, &own));
-            Some(by_entries.filter(|own| own.p > found.p).unwrap_or(found))
+            let nearer = by_entries.filter(|own| own.p > found.p);
+            Ok(Some(nearer.unwrap_or(found)))
         };
         let scale = |f: &&Recovered| f.nuisance.as_ref().and_then(|n| n.scale);
         let free = found.iter().any(|f| scale(f).is_some());
-        Some(Self {
-            possible: by(Method::Joint)?,
-            any: by(Method::JointUnbounded),
+        let of = |possible: Fit| Self {
+            possible,
+            any: by(Method::JointUnbounded).ok().flatten(),
             brightness: if free { 1.0 } else { problem.brightness() },
-        })
+        };
+        Ok(by(Method::Joint)?.map(of))
     }
 }
 

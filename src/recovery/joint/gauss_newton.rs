@@ -40,6 +40,15 @@ const MOST_STEPS: usize = 40;
 const WHOLE_STEPS: usize = 8;
 /// The factors have settled where none changes by more than this fraction of its σ.
 const SETTLED: f64 = 1e-4;
+/// ν σ_s² of `joint-gp` at most: ε (1 + ε) = −ν σ_s², where p(ε) (1 + ε)^(−ν) is likeliest, has no
+/// solution beyond.
+const MOST_AVERAGED: f64 = 0.25;
+const TOO_ROUGHLY: RecoveryError = RecoveryError::NotForMethod {
+    method: Method::JointGp,
+    what: "cannot average over a scale that is known so roughly, of photographs that tell so much",
+    cure: "leave it free (--free-scale), or know it better",
+};
+
 /// Recovers by `by`, a method on a problem that is linear in the factors.
 pub(in crate::recovery) fn recover(
     method: Method,
@@ -106,6 +115,10 @@ pub(in crate::recovery) fn recover(
     };
     let (steps, mut settled) = settle(method, &mut at)?;
     let steps = before + steps;
+    let scale_error = problem.nuisance.scale_error.unwrap_or(0.0);
+    if at.directions * scale_error * scale_error > MOST_AVERAGED {
+        return Err(TOO_ROUGHLY);
+    }
     let linear = Linear::about(problem, &at);
     let shared = Shared::default();
     let about = linear.problem(&base).sharing(&shared);

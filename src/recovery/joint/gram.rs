@@ -37,7 +37,7 @@ pub(super) fn grey_factor(along: f64, grey: f64, square: f64) -> Option<f64> {
 
 /// What of the trace of the Gram matrix may be left out: with a free scale of s ρ, by the scale of
 /// a grey surface, whose light M has ⟨Φ, M⟩ = `along` and ⟨M, M⟩ = `grey`; ⟨Φ, Φ⟩ = `square`.
-pub(super) fn lost(problem: &Problem<'_>, along: f64, grey: f64, square: f64) -> f64 {
+pub(super) fn lost(problem: &Problem<'_>, [along, grey, square]: [f64; 3]) -> f64 {
     let factor = || grey_factor(along, grey, square);
     match problem.nuisance.free_scale.then(factor).flatten() {
         Some(scale) => LOST / (scale * scale),
@@ -61,11 +61,17 @@ pub(super) fn reduced(
     if problem.nuisance.background {
         return Ok(None);
     }
-    let rows = Rows::new(problem, root);
+    let rows = Rows::new(problem, &root);
     let of_data = rows.weigh(problem.phi);
-    let grey = rows.weigh(&problem.light(&DVector::from_element(problem.elements(), GREY)));
     let square = of_data.norm_squared();
-    let lost = lost(problem, of_data.dot(&grey), grey.norm_squared(), square);
+    // A factor that is known roughly multiplies the light of the surface, and would take it.
+    let known = problem.soft.map(|_| problem.with_known_factors());
+    let known = known.as_ref().map(|known| Rows::new(known, &root));
+    let known = known.as_ref().unwrap_or(&rows);
+    let grey = known.weigh(&problem.light(&DVector::from_element(problem.elements(), GREY)));
+    let seen = known.weigh(problem.phi);
+    let sizes = [seen.dot(&grey), grey.norm_squared(), seen.norm_squared()];
+    let lost = lost(problem, sizes);
     let moment = rows.gathered(&of_data);
     let found = if problem.elements() <= WHOLE {
         let Some(whole) = rows.whole() else {

@@ -242,7 +242,7 @@ impl Operator {
             let (moment, square) = (along.column_sum(), phi.norm_squared());
             let fewer = if by_entry {
                 let (along, grey) = (gram::GREY * moment.sum(), gram::GREY.powi(2) * whole.sum());
-                let lost = gram::lost(problem, along, grey, square);
+                let lost = gram::lost(problem, [along, grey, square]);
                 let gram = Gram {
                     diagonal: whole.diagonal(),
                     column: |j| Some(whole.column(j).into_owned()),

@@ -9,7 +9,7 @@ use crate::recovery::{Options, Problem, RecoveryError};
 /// s₀, what s is before the picture is known: 1, or with a free scale the factor that brings the
 /// model's photographs M of a grey surface, ρ = ½, nearest to Φ:
 ///
-/// > s₀ = ⟨Φ, M⟩/⟨M, M⟩,   weighted, other light eliminated from both,
+/// > s₀ = ⟨Φ, M⟩/⟨M, M⟩,   weighted, other light eliminated from both, factors as they are estimated,
 ///
 /// or ‖Φ‖/‖M‖ where that is not positive. What a method supposes of ρ it supposes of x/s₀ then, so
 /// that photographs in any unit give the same picture. In the unit of Φ per W.
@@ -20,7 +20,9 @@ pub(super) fn unit(problem: &Problem<'_>) -> Result<f64, RecoveryError> {
     if !problem.nuisance.free_scale {
         return Ok(1.0);
     }
-    let operator = operator(problem, &Options::default())?;
+    // A factor that is known roughly multiplies this very light, and would take it.
+    let known = problem.soft.map(|_| problem.with_known_factors());
+    let operator = operator(known.as_ref().unwrap_or(problem), &Options::default())?;
     let directions = operator.directions()?;
     let (found, seen) = &*directions;
     let grey = &found.vt * DVector::from_element(problem.elements(), GREY);

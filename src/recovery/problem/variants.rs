@@ -34,6 +34,15 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same with factors that are what they are estimated to be.
+    pub(in crate::recovery) fn with_known_factors(&self) -> Self {
+        Problem {
+            soft: None,
+            shared: None,
+            ..*self
+        }
+    }
+
     /// The same with other photographs and another right side of the operator, and with factors
     /// about estimates of them.
     pub(in crate::recovery) fn about<'b>(

@@ -185,6 +185,63 @@ fn every_method_finds_the_factors() {
     }
 }
 
+/// With a free scale too where the factors are thousands of times the noise: the picture's own size
+/// is not taken for theirs.
+#[test]
+fn a_free_scale_beside_large_factors_is_found() {
+    let bench = Bench::new(6.0, 4, 8);
+    let board = bench.board(2).map(|x| 0.2 + 0.6 * x);
+    let nuisance = Nuisance {
+        free_scale: true,
+        frame_gain: Some(0.05),
+        ..Nuisance::default()
+    };
+    for method in [Method::JointGp, Method::JointUnbounded, Method::Joint] {
+        let mut normal = normal_stream(77);
+        let mut phi = bench.phi(&board) * 3e16;
+        let stderr = DMatrix::from_element(phi.nrows(), phi.ncols(), 1e-5 * phi.mean());
+        for mut frame in phi.column_iter_mut() {
+            frame *= 1.0 + 0.05 * normal();
+        }
+        let phi = phi.zip_map(&stderr, |x, s| x + s * normal());
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_grids(&[[4, 4]]).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        let found = recover(method, &problem, &Options::default()).unwrap();
+        assert!(gains(&found).settled, "{method}: {:?}", gains(&found));
+        let off = (&found.reflectance - &board / 0.8).amax();
+        assert!(off < 0.1, "{method}: {off}");
+        let scale = found.nuisance.as_ref().unwrap().scale.unwrap();
+        // Known as well as the mean of 120 factors, and the brightest element.
+        assert!(
+            (scale / (0.8 * 3e16) - 1.0).abs() < 0.1,
+            "{method}: {scale:e}"
+        );
+    }
+}
+
+/// A scale that is known to 30 %, of photographs that tell all of 16 elements: `joint-gp` refuses
+/// to average over it.
+#[test]
+fn a_scale_that_is_known_too_roughly_is_refused() {
+    let bench = Bench::new(6.0, 4, 8);
+    let phi = bench.phi(&bench.board(2));
+    let stderr = DMatrix::from_element(phi.nrows(), phi.ncols(), 1e-6 * phi.mean());
+    let of = |scale_error| {
+        let nuisance = Nuisance {
+            scale_error: Some(scale_error),
+            ..Nuisance::default()
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_grids(&[[4, 4]]).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        recover(Method::JointGp, &problem, &Options::default())
+    };
+    assert!(of(0.05).is_ok());
+    let error = of(0.3).unwrap_err().to_string();
+    assert!(error.contains("--free-scale"), "{error}");
+}
+
 /// Right photographs of much larger factors than noise are never refused as understated noise: the
 /// first linear problems, about factors of 1, explain none of them. Of 40 pictures of 3 × 3
 /// elements at most twice the noise of 0.1 % is left.
