@@ -13,7 +13,8 @@
 //! photographs do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov
 //! θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
 //! where the photographs ask for it, and so is what the next rule of integration would
-//! ([`rule`]). All parameters together are held against what was known of them ([`beforehand`]).
+//! ([`rule`]). All parameters together are held against what was known of them ([`beforehand`]), and
+//! what is left over against light that the model leaves out ([`light_left_out`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -57,6 +58,7 @@ mod finish;
 mod geometry;
 mod identified;
 mod left_out;
+mod light_left_out;
 mod other_pictures;
 mod picture;
 mod posterior;
@@ -70,6 +72,7 @@ pub use calibration::{Calibrated, Calibration, Starts};
 pub use descent::Stage;
 pub use elements::FinerElements;
 pub use identified::{Direction, Identified};
+pub use light_left_out::LightLeftOut;
 pub use profile::Profile;
 
 use super::error::LabError;

@@ -230,7 +230,7 @@ pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
 pub use calibrate::{
     Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
-    Identified, Profile, Stage, Starts,
+    Identified, LightLeftOut, Profile, Stage, Starts,
 };
 pub use certainty::{Certainty, Errors, PooledFrom};
 pub use chosen::{Beside, Chosen};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Beforehand, Direction, FinerElements, Identified, Profile, Stage};
+use super::{Beforehand, Direction, FinerElements, Identified, LightLeftOut, Profile, Stage};
 use crate::lab::located::Grid;
 use crate::recovery::ErrorField;
 
@@ -83,6 +83,10 @@ pub struct Calibration {
     /// The parameters together against what was known beforehand; absent where nothing was, and
     /// where of no direction that was known the photographs tell enough.
     pub beforehand: Option<Beforehand>,
+    /// What light that the model leaves out would explain of what is left over; nothing where that
+    /// is not asked: of noise that is not stated or that entries share, and of light that all
+    /// frames share and that is estimated.
+    pub light_left_out: Vec<LightLeftOut>,
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.
     pub replicates: Option<u32>,

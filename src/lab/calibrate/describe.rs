@@ -34,9 +34,10 @@ fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 }
 
 impl Calibration {
-    /// Whether the search ended, and the photographs do not refute what it found.
+    /// Whether the search ended, the photographs do not refute what it found, and a surface can have
+    /// its picture.
     pub fn is_found(&self) -> bool {
-        self.is_settled && !self.is_refuted()
+        self.is_settled && !self.is_refuted() && self.impossible().is_none()
     }
 
     /// Whether the photographs do not fit what was found, and it is not for the integration.
@@ -86,10 +87,10 @@ impl Calibration {
             format!("{} {value} ± {error}", f.name)
         };
         let few: Vec<String> = self.geometry().take(LISTED).map(of).collect();
-        let ended = if self.is_settled {
-            ""
-        } else {
-            " The search did not end: do not use it."
+        let ended = match self.impossible() {
+            _ if !self.is_settled => " The search did not end: do not use it.",
+            Some(_) => " No surface can have the picture that goes with it: do not use it.",
+            None => "",
         };
         let found = format!("rom what the scene says: {}.{ended}", listed(&few));
         match self.p.filter(|_| self.is_refuted()) {
@@ -242,6 +243,7 @@ impl Calibration {
         notes.push(self.elements());
         notes.extend([self.searched(), self.picture()]);
         notes.extend(self.beyond());
+        notes.extend(self.light_beyond());
         notes.extend(self.gains_beyond());
         let by_pictures = self.by_pictures();
         if !by_pictures.is_empty() {
@@ -306,8 +308,7 @@ impl Describe for Calibration {
                 true if self.is_coarse()
                     || self.asks_for_elements()
                     || self.shared.is_some()
-                    || self.is_beyond()
-                    || self.impossible().is_some() =>
+                    || self.is_beyond() =>
                 {
                     Tone::Plain
                 }

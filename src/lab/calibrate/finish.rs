@@ -161,6 +161,7 @@ impl CalibrationPlan {
             finer_elements: elements,
             untold,
             beforehand: Beforehand::of(&found[..problem.geometry.parameters.len()], &covariance),
+            light_left_out: problem.light_left_out(best, &light, &information)?,
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),

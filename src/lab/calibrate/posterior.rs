@@ -69,7 +69,7 @@ impl Seen<'_> {
     }
 
     /// Whitened columns of frame l.
-    fn white(&self, l: usize, columns: &[&Matrix]) -> Result<Vec<Matrix>, LabError> {
+    pub(super) fn white(&self, l: usize, columns: &[&Matrix]) -> Result<Vec<Matrix>, LabError> {
         let white = self.photographs.whitening(l)?;
         let each = columns.iter().map(|m| white.apply(m) / self.factor);
         Ok(each.collect())

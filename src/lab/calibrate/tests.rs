@@ -3,6 +3,7 @@
 mod beforehand;
 mod errors;
 mod estimates;
+mod light_left_out;
 mod pictures;
 
 use nalgebra::DVector;

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::lab::calibrate::{Calibrated, Calibration};
+use crate::lab::calibrate::{Calibrated, Calibration, LightLeftOut};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::lab::finding::listed;
 use crate::num::digits::figure;
@@ -11,11 +11,44 @@ use crate::recovery::Deviations;
 
 /// Probability of a single parameter as far off, of all that were known.
 const FAR: f64 = 0.01;
+/// More than this share of a misfit is most of it.
+const MOST: f64 = 0.5;
 
 impl Calibration {
-    /// Whether single parameters, or all together, are farther off than they were known to.
+    /// Whether single parameters, or all together, are farther off than they were known to, or
+    /// light that the model leaves out would explain what is left over.
     pub(super) fn is_beyond(&self) -> bool {
-        self.is_beyond_together() || self.far().next().is_some()
+        let light = self.left_out_light().next().is_some();
+        self.is_beyond_together() || self.far().next().is_some() || light
+    }
+
+    /// Of kinds that explain much the likeliest and what is hardly less so; where the photographs
+    /// refute all only what explains most of the misfit, for anything explains a little of one.
+    fn left_out_light(&self) -> impl Iterator<Item = &LightLeftOut> {
+        let each = self.light_left_out.iter();
+        let most = each.clone().map(|light| light.chi2).fold(0.0, f64::max);
+        let misfit = if self.is_refuted() {
+            (self.misfit - 1.0) * self.dof
+        } else {
+            0.0
+        };
+        each.filter(move |light| light.p < FIT_LEVEL && light.chi2 > MOST * most.max(misfit))
+    }
+
+    /// What is said of such light.
+    pub(super) fn light_beyond(&self) -> impl Iterator<Item = String> {
+        self.left_out_light().map(|light| {
+            format!(
+                "Beware: {} would explain what is left over better than the geometry that was found does (χ² {} of {} \
+                 directions, P {}): the geometry takes it up, and may be OFF BY MANY OF ITS ERRORS. If there may be \
+                 such light, {}; else something is wrong that is not free.",
+                light.what,
+                figure(light.chi2, 3),
+                light.directions,
+                figure(light.p, 1),
+                light.cure
+            )
+        })
     }
 
     fn is_beyond_together(&self) -> bool {

@@ -79,7 +79,7 @@ fn no_light_tells_no_geometry() {
 }
 
 /// Photographs with the wrong sign fit a picture below 0, and three times too bright ones one above
-/// 1: that no surface is so is said, of right ones not.
+/// 1: that no surface is so is said, and nothing is found; of right ones not.
 #[test]
 fn pictures_that_cannot_be_are_told() {
     let scene = small("bench", 8);
@@ -88,10 +88,12 @@ fn pictures_that_cannot_be_are_told() {
         let (phi, stderr) = (&phi * times, &stderr * f64::abs(times));
         let found = plan(&["hidden.normal"], 2);
         let found = found.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
-        let said = found.unwrap().describe();
+        let found = found.unwrap();
+        let said = found.describe();
         let is_told = said.notes.concat().contains("no surface reflects less");
         assert_eq!(is_told, times != 1.0, "{times}: {:?}", said.notes);
-        assert!(times == 1.0 || said.tone != Tone::Good);
+        assert_eq!(found.is_found(), times == 1.0, "{times}");
+        assert!(times == 1.0 || said.tone == Tone::Bad);
     }
 }
 

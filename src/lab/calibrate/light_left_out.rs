@@ -1,0 +1,146 @@
+//! Whether what is left over looks like light that the model leaves out.
+//!
+//! Light S a, of patterns S that all frames share and sizes a that nothing says, picture and
+//! geometry following, would change the cost by −½ gᵀF⁻¹g, all whitened:
+//!
+//! > g = Sᵀ(y − Aρ̂),   F = SᵀS − SᵀA P AᵀS − SᵀB⊥ (F_θ + Λ)⁻¹ B⊥ᵀS
+//!
+//! and without such light gᵀF⁻¹g is χ² (score test, Rao 1948). χ² of all entries hardly sees it: a
+//! geometry that takes it up is off by many of its errors, and fits.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::descent::{Problem, State};
+use super::geometry::Light;
+use crate::lab::certainty::Errors;
+use crate::lab::error::LabError;
+use crate::matrix::Matrix;
+use crate::num::linalg::{Cholesky, product, tr_product};
+
+/// What of a pattern must be left by other light, picture and geometry, over all of it.
+const LEFT: f64 = 1e-6;
+
+/// The patterns: over the view, x and y from −1 to 1, 1, x and y; and of the light that is found, x
+/// y and x² + y² times that.
+const KINDS: [(&str, &str, Range<usize>); 2] = [
+    (
+        "light that all frames share (even, or a slope over the view)",
+        "estimate it (--background, --frame-polynomial), or take dark frames",
+        0..3,
+    ),
+    (
+        "a falloff of the camera over its view",
+        "divide by a flat field",
+        3..6,
+    ),
+];
+
+/// Patterns that would explain what is left over.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LightLeftOut {
+    /// What they are.
+    pub what: &'static str,
+    /// What helps against it.
+    #[serde(skip)]
+    pub cure: &'static str,
+    /// gᵀF⁻¹g.
+    pub chi2: f64,
+    /// How many of them the photographs tell from picture and geometry.
+    pub directions: usize,
+    /// Probability of as large a sum by noise alone.
+    pub p: f64,
+}
+
+/// SᵀS, AᵀS and B⊥ᵀS, g, and the squares of S before other light took any.
+struct Sums {
+    own: Matrix,
+    light: Matrix,
+    geometry: Matrix,
+    score: Matrix,
+    whole: Vec<f64>,
+}
+
+/// Columns of a frame whose light is `m`, W.
+fn patterns(m: &Matrix, columns: usize) -> Matrix {
+    let rows = m.nrows() / columns;
+    let over = |k: usize, n: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
+    Matrix::from_fn(m.nrows(), KINDS[1].2.end, |p, k| {
+        let [x, y] = [over(p % columns, columns), over(p / columns, rows)];
+        [1.0, x, y, m[p] * x, m[p] * y, m[p] * (x * x + y * y)][k]
+    })
+}
+
+impl Problem<'_> {
+    /// Each kind of pattern against what is left of photographs whose noise is stated, is each
+    /// entry's own, and is not along cosines or less the mean of the frames.
+    pub(super) fn light_left_out(
+        &self,
+        best: &State,
+        light: &Light,
+        information: &Cholesky,
+    ) -> Result<Vec<LightLeftOut>, LabError> {
+        let known = self.photographs.certainty;
+        let is_own = known.errors == Errors::Independent && self.photographs.stderr.is_some();
+        if !is_own || self.cosines.is_some() || self.common.is_some() {
+            return Ok(Vec::new());
+        }
+        let sums = self.sums(best, light)?;
+        let towards = information.forward(sums.geometry.clone());
+        let picture = product(&best.slope.covariance, &sums.light);
+        let f = &sums.own - tr_product(&sums.light, &picture) - tr_product(&towards, &towards);
+        let of = |(what, cure, kind): &(&'static str, &'static str, Range<usize>)| {
+            let told = kind.clone().filter(|k| f[(*k, *k)] > LEFT * sums.whole[*k]);
+            let told: Vec<usize> = told.collect();
+            let own = f.select_rows(&told).select_columns(&told);
+            let factor = Cholesky::new(&own).filter(|_| !told.is_empty())?;
+            let chi2 = factor.forward(sums.score.select_rows(&told)).norm_squared();
+            let directions = told.len();
+            Some(LightLeftOut {
+                what,
+                cure,
+                chi2,
+                directions,
+                p: known.by_noise(chi2, directions as f64),
+            })
+        };
+        Ok(KINDS.iter().filter_map(of).collect())
+    }
+
+    fn sums(&self, best: &State, light: &Light) -> Result<Sums, LabError> {
+        let seen = self.seen(best.factor);
+        let (rho, columns) = (&best.value.rho, self.geometry.scene.camera.columns);
+        let b = seen.columns(light, rho, &best.slope.covariance, self.unknowns())?;
+        let (n, all) = (light.elements(), KINDS[1].2.end);
+        let mut sums = Sums {
+            own: Matrix::zeros(all, all),
+            light: Matrix::zeros(n, all),
+            geometry: Matrix::zeros(self.unknowns(), all),
+            score: Matrix::zeros(all, 1),
+            whole: vec![0.0; all],
+        };
+        for (l, own) in b.iter().enumerate() {
+            let [y, a] = seen.frame(light, l)?;
+            let b = &own.b - product(&a, &best.slope.shift);
+            let shape = light.frame(l) * rho;
+            let shape = Matrix::from_column_slice(shape.len(), 1, shape.as_slice());
+            let s = patterns(&shape, columns);
+            let roots = self.photographs.roots(l);
+            for (k, whole) in sums.whole.iter_mut().enumerate() {
+                let each = s.column(k).component_mul(&roots);
+                *whole += each.norm_squared() / (best.factor * best.factor);
+            }
+            for s in seen.white(l, &[&s])? {
+                sums.own += tr_product(&s, &s);
+                sums.light += tr_product(&a, &s);
+                sums.geometry += tr_product(&b, &s);
+                sums.score += tr_product(
+                    &s,
+                    &(&y - &a * Matrix::from_column_slice(n, 1, rho.as_slice())),
+                );
+            }
+        }
+        Ok(sums)
+    }
+}
