@@ -155,7 +155,7 @@ impl Calibration {
                 {
                     ""
                 } else {
-                    " The errors are those of the noise."
+                    " The errors are those of the noise, if all that is not free is as the scene says."
                 }
             ),
             Some(_) if self.is_coarse() => format!(
