@@ -28,6 +28,7 @@ mod flicker;
 mod footprints;
 mod highest;
 mod import;
+mod kind;
 pub mod left_out;
 mod lens;
 mod list;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{PhotographError, refused};
 use super::flicker::Flicker;
+use super::kind::Kind;
 use super::noise::Repeated;
 use super::pattern::expanded;
 use super::plane::{Averaged, Chosen, Plane, linearised, same_full_scale, same_size};
@@ -32,6 +33,10 @@ pub(super) struct Shots<'a> {
     /// Averaged photographs of even radiance, and their dark frames.
     pub flat: Option<(Averaged, Option<Averaged>)>,
     pub dead: Vec<bool>,
+    /// What the photographs are, where a channel of them is chosen.
+    kind: Option<Kind>,
+    /// Dark frames and flat fields that do not tell the channels of photographs in colour apart.
+    pub grey: Vec<String>,
 }
 
 impl<'a> Shots<'a> {
@@ -47,6 +52,7 @@ impl<'a> Shots<'a> {
         let takes = takes(set, listed, folder)?;
         let first = takes.first();
         let first = first.ok_or_else(|| refused("there are no photographs", "name one or more"))?;
+        let name = reader.name(&first.path);
         let first = reader.photographs(&first.path)?;
         let first = first.first();
         let first =
@@ -63,6 +69,7 @@ impl<'a> Shots<'a> {
             Some(ChannelName::Blue) => Chosen::One(Channel::Blue),
             Some(ChannelName::Mean) => Chosen::Mean,
         };
+        let kind = (chosen != Chosen::Grey).then(|| Kind::of(name, first));
         let mut shots = Self {
             set,
             spots,
@@ -74,9 +81,13 @@ impl<'a> Shots<'a> {
             darks: Vec::new(),
             flat: None,
             dead: Vec::new(),
+            kind,
+            grey: Vec::new(),
         };
         shots.dead = shots.dead_pixels(folder, reader)?;
-        let mut average = |files: &Files| shots.average(&expanded(folder, files)?, reader);
+        let mut grey = Vec::new();
+        let mut average =
+            |files: &Files| shots.average(&expanded(folder, files)?, reader, &mut grey);
         let darks = match &set.dark {
             None => Vec::new(),
             Some(DarkTable::Files(files)) => {
@@ -95,7 +106,7 @@ impl<'a> Shots<'a> {
                 Some((average(files)?, dark))
             }
         };
-        (shots.darks, shots.flat) = (darks, flat);
+        (shots.darks, shots.flat, shots.grey) = (darks, flat, grey);
         Ok(shots)
     }
 
@@ -130,11 +141,13 @@ impl<'a> Shots<'a> {
         linearised(name, samples, chosen, &response, saturation)
     }
 
-    /// The mean of all photographs in `paths`.
+    /// The mean of all photographs in `paths`, dark frames or flat fields; `grey` gets the names of
+    /// those that miss the colour of the others.
     fn average(
         &self,
         paths: &[PathBuf],
         reader: &mut Reader<'_>,
+        grey: &mut Vec<String>,
     ) -> Result<Averaged, PhotographError> {
         let mut mean: Option<Averaged> = None;
         for path in paths {
@@ -145,7 +158,12 @@ impl<'a> Shots<'a> {
                     "name every file once",
                 ));
             }
-            for samples in reader.photographs(path)? {
+            let found = reader.photographs(path)?;
+            let is_missed = |kind: &Kind| found.iter().any(|s| kind.is_missed_by(s));
+            if self.kind.as_ref().is_some_and(is_missed) {
+                grey.push(name.clone());
+            }
+            for samples in found {
                 // A grey dark frame or flat field is that of every channel.
                 let chosen = match samples.channels.len() {
                     1 => Chosen::Grey,
@@ -250,7 +268,12 @@ impl<'a> Shots<'a> {
         reader: &mut Reader<'_>,
         visit: impl FnMut(usize, &Take, Averaged) -> Result<(), PhotographError>,
     ) -> Result<(), PhotographError> {
-        let plane = |name: &str, samples: &Samples| self.plane(name, samples, self.chosen);
+        let plane = |name: &str, samples: &Samples| {
+            if let Some(kind) = &self.kind {
+                kind.refuse_other(name, samples)?;
+            }
+            self.plane(name, samples, self.chosen)
+        };
         let repeats = self.set.repeats.map_or(1, |n| n as usize);
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }
