@@ -123,7 +123,7 @@ pub(super) fn execute(
     let (attempts, picards) = recovering(console, "recover", &methods, |control| {
         recover_with_picards(&model, &phi, noise, nuisance, &methods, &options, control)
     });
-    let mut objects = collect(attempts, methods.len() == 1, console)?;
+    let mut objects = collect(attempts, named, console)?;
     if named.is_empty() {
         by_trust(&mut objects);
     }
