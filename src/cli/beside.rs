@@ -5,22 +5,26 @@ use std::path::{Path, PathBuf};
 use super::args::BesideArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_undamaged, refuse_other_shape};
+use super::load_run::{read_undamaged, refuse_damaged, refuse_other_shape};
 use super::recover_memory;
 use super::run_folder::{LEFT_OUT, SATURATED, TAILS};
 use super::settings::within;
 use crate::folder::Origin;
 use crate::lab::{Certainty, Errors, polynomials};
-use crate::matrix::{self, Matrix, npy};
+use crate::matrix::npy::{self, NpyError};
+use crate::matrix::{self, Matrix};
 use crate::num::digits::figure;
 use crate::recovery::{Method, Nuisance, Setting};
 use crate::scene::Scene;
+use crate::store;
 
 /// Patterns that may be estimated in each frame.
 const MOST_PATTERNS: usize = 64;
 /// Patterns of all frames together that may be estimated beside a background: a matrix of as many
 /// columns, 128 MiB.
 const MOST_COUPLED: usize = 4096;
+/// Most bytes of a mask's file before its entries: the longest header that is read, and its ends.
+const HEADER_MAX: u64 = 2048;
 
 /// The size of Φcam.
 pub(super) struct PhotographSize {
@@ -49,6 +53,27 @@ impl PhotographSize {
         let expected = (self.pixels, self.spots);
         refuse_other_shape(path, npy::shape(path)?, expected, &self.name)?;
         read_undamaged(path)
+    }
+
+    /// A mask of the same size, whose entries may be truths or integers, too.
+    fn read_mask(&self, path: &Path) -> Result<Matrix, Failure> {
+        let Err(NpyError::Type { .. }) = npy::shape(path) else {
+            return self.read(path);
+        };
+        // At most 8 bytes an entry, and a header.
+        let most = 8 * (self.pixels * self.spots) as u64 + HEADER_MAX;
+        let array = npy::read_array(&path.display().to_string(), &store::read(path, most)?)?;
+        let shape = match array.shape[..] {
+            [rows] => (rows, 1),
+            [rows, columns] => (rows, columns),
+            _ => {
+                let cause = format!("{} has the shape {:?}", path.display(), array.shape);
+                return Err(Failure::new(cause, "give a mask of pixels × spots"));
+            }
+        };
+        refuse_other_shape(path, shape, (self.pixels, self.spots), &self.name)?;
+        refuse_damaged(path)?;
+        Ok(Matrix::from_row_slice(shape.0, shape.1, &array.values))
     }
 }
 
@@ -333,7 +358,7 @@ pub(super) fn left_out(
     let Some(file) = &mask(asked, phi) else {
         return Ok(None);
     };
-    let flags = of.read(file)?;
+    let flags = of.read_mask(file)?;
     let count = flags.iter().filter(|x| **x != 0.0).count();
     if count == 0 {
         return Ok(None);
