@@ -67,6 +67,7 @@ mod locate;
 mod man;
 mod many;
 pub mod many_machines;
+mod mask;
 mod model;
 mod new;
 mod notices;

@@ -23,6 +23,7 @@
 mod account;
 mod columns;
 mod correct;
+mod dead;
 mod error;
 mod flicker;
 mod footprints;

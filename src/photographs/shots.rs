@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::dead::dead_pixels;
 use super::error::{PhotographError, refused};
 use super::flicker::Flicker;
 use super::kind::Kind;
@@ -10,7 +11,7 @@ use super::pattern::expanded;
 use super::plane::{Averaged, Chosen, Plane, linearised, same_full_scale, same_size};
 use super::read::Reader;
 use super::response::{Response, ResponseTable, response_table};
-use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
+use super::set::{ChannelName, DarkTable, Files, FrameTable, Set};
 use super::takes::{Take, each_spot, one_exposure, takes};
 use crate::image::{Channel, Samples};
 
@@ -84,7 +85,7 @@ impl<'a> Shots<'a> {
             kind,
             grey: Vec::new(),
         };
-        shots.dead = shots.dead_pixels(folder, reader)?;
+        shots.dead = dead_pixels(set, shots.size, folder, reader)?;
         let mut grey = Vec::new();
         let mut average =
             |files: &Files| shots.average(&expanded(folder, files)?, reader, &mut grey);
@@ -182,48 +183,6 @@ impl<'a> Shots<'a> {
                 "leave it out, or name files",
             )
         })
-    }
-
-    fn dead_pixels(
-        &self,
-        folder: &Path,
-        reader: &mut Reader<'_>,
-    ) -> Result<Vec<bool>, PhotographError> {
-        let [width, height] = self.size;
-        let mut dead = vec![false; width * height];
-        match &self.set.dead {
-            None => {}
-            Some(DeadTable::Pixels(pixels)) => {
-                for [u, v] in pixels {
-                    if *u >= width || *v >= height {
-                        return Err(refused(
-                            format!(
-                                "the dead pixel ({u}, {v}) is not in a photograph of {width} × {height}"
-                            ),
-                            "give column and row from (0, 0), the upper left one",
-                        ));
-                    }
-                    dead[u + v * width] = true;
-                }
-            }
-            Some(DeadTable::Picture(name)) => {
-                let found = reader.photographs(&folder.join(name))?;
-                let found = found.first().filter(|s| [s.width, s.height] == self.size);
-                let found = found.ok_or_else(|| {
-                    refused(
-                        format!("{name} is not of {width} × {height} pixels"),
-                        "give a picture of dead pixels of the photographs' size",
-                    )
-                })?;
-                for (dead, pixel) in dead
-                    .iter_mut()
-                    .zip(found.values.chunks(found.channels.len()))
-                {
-                    *dead = pixel.iter().any(|x| *x != 0.0);
-                }
-            }
-        }
-        Ok(dead)
     }
 
     /// The dark frames of the shortest exposure time: what is above them is counted in electrons,
