@@ -1,13 +1,12 @@
-//! What photographs hold beside the light of the hidden surface, and what of them does not count.
+//! What photographs hold beside the light of the hidden surface.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::args::BesideArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_other_shape};
-use super::recover_memory;
-use super::run_folder::{LEFT_OUT, SATURATED, TAILS};
+use super::run_folder::TAILS;
 use super::settings::within;
 use crate::folder::Origin;
 use crate::lab::{Certainty, Errors, polynomials};
@@ -44,7 +43,7 @@ impl PhotographSize {
     }
 
     /// A matrix of the same size.
-    fn read(&self, path: &Path) -> Result<Matrix, Failure> {
+    pub(super) fn read(&self, path: &Path) -> Result<Matrix, Failure> {
         // By its header, before memory is taken for its numbers.
         let expected = (self.pixels, self.spots);
         refuse_other_shape(path, npy::shape(path)?, expected, &self.name)?;
@@ -280,68 +279,4 @@ pub(super) fn refuse_meaningless(args: &BesideArgs) -> Result<(), Failure> {
         within(setting.name(), value, |value| setting.allows(value), range)?;
     }
     Ok(())
-}
-
-/// The file that says which entries do not count: the one asked for, else the one beside Φcam.
-pub(super) fn mask(asked: Option<&Path>, phi: &Path) -> Option<PathBuf> {
-    let beside = phi.with_file_name(LEFT_OUT);
-    let beside = beside.exists().then_some(beside);
-    asked.map(Path::to_path_buf).or(beside)
-}
-
-/// Rows of a mask that are read at a time.
-const MASK_ROWS: usize = 256;
-
-/// Refuses photographs of `phicam expose` whose values mean nothing in places, by the mask beside
-/// them: they are too low or too high by an unknown amount, and no standard error says so. `cure`
-/// is what else may be done.
-pub(super) fn refuse_clipped(phi: &Path, scene: &Scene, cure: &str) -> Result<(), Failure> {
-    let mask = phi.with_file_name(SATURATED);
-    if !mask.exists() {
-        return Ok(());
-    }
-    let mut rows = recover_memory::open(&mask, scene)?;
-    let (pixels, spots) = rows.shape();
-    let mut marked = 0;
-    for first in (0..pixels).step_by(MASK_ROWS) {
-        let part = rows.read(first, MASK_ROWS)?;
-        marked += part.iter().filter(|x| x.abs() >= 1.0).count();
-    }
-    if marked == 0 {
-        return Ok(());
-    }
-    let cause = format!(
-        "{marked} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
-        pixels * spots,
-        phi.display(),
-        mask.display()
-    );
-    let cure = format!(
-        "expose for a shorter time or in --brackets; --left-out {} leaves them out{cure}",
-        mask.display()
-    );
-    Err(Failure::new(cause, cure))
-}
-
-/// Entries that do not count, by [`mask`].
-pub(super) fn left_out(
-    asked: Option<&Path>,
-    phi: &Path,
-    of: &PhotographSize,
-    console: Console,
-) -> Result<Option<Matrix>, Failure> {
-    let Some(file) = &mask(asked, phi) else {
-        return Ok(None);
-    };
-    let flags = of.read(file)?;
-    let count = flags.iter().filter(|x| **x != 0.0).count();
-    if count == 0 {
-        return Ok(None);
-    }
-    console.say(format!(
-        "{count} of {} entries are left out, says {}",
-        flags.len(),
-        file.display()
-    ));
-    Ok(Some(flags))
 }

@@ -1,11 +1,12 @@
 //! `phicam calibrate`: the geometry, from the photographs.
 
 use super::args::CalibrateArgs;
-use super::beside::{frame_gain, refuse_clipped};
+use super::beside::frame_gain;
 use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
 use super::load_run::{read_bare_scene, read_run};
+use super::mask::refuse_clipped;
 use super::output;
 use super::process::pool;
 use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};

@@ -67,6 +67,7 @@ mod locate;
 mod man;
 mod many;
 pub mod many_machines;
+mod mask;
 mod model;
 mod new;
 mod notices;
@@ -119,6 +120,16 @@ fn refuse_undefinable(command: &Command, define: &[(String, String)]) -> Result<
     Err(Failure::usage(cause, cure))
 }
 
+/// Refuses two values of one key, of which only one could hold.
+fn refuse_defined_twice(define: &[(String, String)]) -> Result<(), Failure> {
+    let is_again = |k: &usize| define[..*k].iter().any(|(key, _)| *key == define[*k].0);
+    let Some((key, _)) = (1..define.len()).find(is_again).map(|k| &define[k]) else {
+        return Ok(());
+    };
+    let cause = format!("-D gives {key} twice");
+    Err(Failure::usage(cause, "give every key one value"))
+}
+
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
     interrupt::outlive_size_limits();
@@ -134,7 +145,8 @@ pub fn main() -> ExitCode {
         also_read: &args.also_read,
         define: &args.define,
     };
-    let ready = refuse_undefinable(&args.command, &args.define);
+    let ready = refuse_undefinable(&args.command, &args.define)
+        .and_then(|()| refuse_defined_twice(&args.define));
     if let Err(failure) = ready.and_then(|()| process::start_threads()) {
         failure.report();
         return ExitCode::from(failure.code(args.command.codes()));

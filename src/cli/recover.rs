@@ -93,7 +93,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         Held::Whole => request.whole()?,
         Held::Strips(pixels) => (request.strips(pixels)?, Vec::new()),
     };
-    let mut objects = collect(attempts, methods.len() == 1, console)?;
+    let mut objects = collect(attempts, &named, console)?;
     // Methods that are named keep their order.
     if named.is_empty() {
         by_trust(&mut objects);

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use super::Outcome;
 use super::args::RecoverArgs;
-use super::beside::{Beside, PhotographSize, left_out, mask, relative_errors, warn_of_exact};
+use super::beside::{Beside, PhotographSize, relative_errors, warn_of_exact};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_counted, read_undamaged, refuse_negative};
+use super::mask::{left_out, mask};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, recovering, tell, write};
 use super::run_folder::{RunFolder, SATURATED};
@@ -123,7 +124,7 @@ pub(super) fn execute(
     let (attempts, picards) = recovering(console, "recover", &methods, |control| {
         recover_with_picards(&model, &phi, noise, nuisance, &methods, &options, control)
     });
-    let mut objects = collect(attempts, methods.len() == 1, console)?;
+    let mut objects = collect(attempts, named, console)?;
     if named.is_empty() {
         by_trust(&mut objects);
     }

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::Outcome;
 use super::cleanup::{remove_abandoned, remove_named};
-use super::console::Console;
+use super::console::{Console, complain};
 use super::failure::Failure;
 use super::interrupt::{StepGuard, stop_flag};
 use super::{output, progress};
@@ -21,13 +21,15 @@ use crate::scene::{Division, Scene};
 use crate::store::ensure_writable;
 use crate::transport::Control;
 
-/// The objects that were recovered. A method that cannot work is reported; if none can, or the only
-/// one asked for, that is the command's failure.
+/// The objects that were recovered. A method that cannot work is reported, one of those `named` in
+/// the arguments even where no remarks are wanted; if none can, or the only one asked for, that is
+/// the command's failure.
 pub(super) fn collect(
     attempts: Vec<Attempt>,
-    strict: bool,
+    named: &[Method],
     console: Console,
 ) -> Result<Vec<RecoveredObject>, Failure> {
+    let strict = attempts.len() == 1;
     let mut objects = Vec::new();
     let mut reasons = Vec::new();
     for attempt in attempts {
@@ -52,7 +54,11 @@ pub(super) fn collect(
         ));
     }
     for reason in reasons {
-        console.say(reason);
+        if named.is_empty() {
+            console.say(reason);
+        } else {
+            complain(&format!("warning: {reason}"));
+        }
     }
     Ok(objects)
 }

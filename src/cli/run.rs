@@ -170,7 +170,7 @@ fn compare_and_recover(
             control,
         )
     });
-    results.recovered = recovered::collect(attempts, false, console)?;
+    results.recovered = recovered::collect(attempts, &[], console)?;
     lab::by_trust(&mut results.recovered);
     results.picards = picards?;
     recovered::write(

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use super::beside::certainty;
+use super::beside::{PhotographSize, certainty};
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_left_out, read_matrix, read_photographs, read_stderr};
+use super::load_run::{read_left_out, read_photographs, read_stderr};
+use super::mask::read_mask;
 use super::run_folder::{PHI, STDERR};
 use crate::folder::Record;
 use crate::lab::{Certainty, Photographs, fewer, polynomials};
@@ -46,7 +47,7 @@ pub(super) fn of_run(
     // Of imported photographs the noise may be unknown.
     let is_unknown = record.is_imported() && !file.exists();
     let left_out = match left_out {
-        Some(file) => Some(read_matrix(file, scene)?),
+        Some(file) => Some(read_mask(file, &PhotographSize::of_scene(scene))?),
         None => read_left_out(dir, scene)?,
     };
     let stderr = (!is_unknown).then_some(file);
@@ -65,7 +66,8 @@ pub(super) fn of_files(
     scene: &Scene,
     (polynomial, replicates): (Option<u8>, Option<u32>),
 ) -> Result<Photographs, Failure> {
-    let left_out = left_out.map(|file| read_matrix(file, scene)).transpose()?;
+    let size = PhotographSize::of_scene(scene);
+    let left_out = left_out.map(|file| read_mask(file, &size)).transpose()?;
     let known = (left_out, Certainty::STATED.or(replicates));
     new((phi, stderr), known, (scene, polynomial))
 }

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::args::ValidateArgs;
-use super::beside::{Beside, PhotographSize, refuse_clipped};
+use super::beside::{Beside, PhotographSize};
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_left_out, read_matrix, read_photographs, read_run, read_stderr};
+use super::load_run::{read_left_out, read_photographs, read_run, read_stderr};
+use super::mask::{read_mask, refuse_clipped};
 use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
 use super::{Outcome, settings};
@@ -157,7 +158,7 @@ fn left_out(
     let Some(file) = &args.left_out else {
         return Ok(tails);
     };
-    let own = read_matrix(file, scene)?;
+    let own = read_mask(file, &PhotographSize::of_scene(scene))?;
     let both = |tails: Matrix| tails.zip_map(&own, |a, b| a.abs() + b.abs());
     Ok(Some(tails.map_or_else(|| own.clone(), both)))
 }

@@ -1,8 +1,9 @@
 //! TIFF bytes to samples: the one door to the crate `tiff`.
 //!
-//! Strips and tiles, uncompressed or by LZW, Deflate or PackBits; grey and RGB, chunky and planar.
+//! Strips and tiles, uncompressed or by LZW, Deflate or PackBits; grey and RGB, chunky and planar;
+//! but no planes in tiles that reach beyond the picture, by which the crate panics.
 
-use std::io::Cursor;
+use std::io::{self, Cursor};
 
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -21,6 +22,8 @@ const MOST_FRAMES: usize = 1 << 16;
 const WHITE_IS_ZERO: u32 = 0;
 /// PlanarConfiguration of channels that are stored one after the other.
 const PLANAR: u32 = 2;
+/// Compression by LZW.
+const LZW: u32 = 5;
 
 /// All pages of a file.
 pub(super) fn read_tiff(name: &str, bytes: &[u8]) -> Result<Vec<Samples>, ImageError> {
@@ -56,12 +59,23 @@ pub(super) fn read_tiff(name: &str, bytes: &[u8]) -> Result<Vec<Samples>, ImageE
             let reason = "its zero is white; save it with zero as black";
             return Err(unsupported(name, reason));
         }
-        let is_planar = number(Tag::PlanarConfiguration)? == Some(PLANAR);
+        let is_planar = channels.len() > 1 && number(Tag::PlanarConfiguration)? == Some(PLANAR);
+        let tile = [number(Tag::TileWidth)?, number(Tag::TileLength)?];
+        if is_planar && !is_filled(size, tile) {
+            let reason = "its channels are apart, in tiles that reach beyond the picture; save it in strips, or with the channels of a pixel together";
+            return Err(unsupported(name, reason));
+        }
+        let is_lzw = number(Tag::Compression)? == Some(LZW);
         let turn = number(Tag::Orientation)?.unwrap_or(1);
         let turn = u16::try_from(turn).unwrap_or(u16::MAX);
         let turn = Orientation::new(turn).ok_or_else(|| unknown_turn(name, turn))?;
         let mut found = DecodingResult::U8(Vec::new());
-        decoder.read_image_to_buffer(&mut found).map_err(fault)?;
+        decoder
+            .read_image_to_buffer(&mut found)
+            .map_err(|e| match e {
+                TiffError::IoError(e) if is_lzw => of_lzw(name, &e),
+                other => fault(other),
+            })?;
         let (values, full_scale) = numbers(found);
         if values.len() != count {
             return Err(damaged(name, "it has fewer values than pixels"));
@@ -69,7 +83,7 @@ pub(super) fn read_tiff(name: &str, bytes: &[u8]) -> Result<Vec<Samples>, ImageE
         let frame = Samples {
             width: size[0],
             height: size[1],
-            values: if is_planar && channels.len() > 1 {
+            values: if is_planar {
                 interleaved(&values, channels.len())
             } else {
                 values
@@ -120,6 +134,21 @@ fn held_directory(bytes: &[u8]) -> Option<()> {
     }
     let is_held = |k| number(first + k * entry + 4, count).is_some_and(|n| n <= bytes.len());
     (0..entries).all(is_held).then_some(())
+}
+
+/// Whether tiles of a width and length, if there are any, end where the picture does.
+fn is_filled(size: [usize; 2], tile: [Option<u32>; 2]) -> bool {
+    let mut axes = size.into_iter().zip(tile);
+    axes.all(|(n, tile)| tile.is_none_or(|tile| n.is_multiple_of(tile as usize)))
+}
+
+/// Why an LZW stream is refused: the crate takes some whole ones for cut off, and these are the
+/// same when they are saved again.
+fn of_lzw(name: &str, e: &io::Error) -> ImageError {
+    let reason = format!(
+        "its LZW stream cannot be read ({e}): it is damaged, or ends otherwise than expected; save it uncompressed or with Deflate"
+    );
+    unsupported(name, reason)
 }
 
 /// The channels and their bits, if they are light.

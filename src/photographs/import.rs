@@ -15,8 +15,8 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, copied, flickers, little_left, mirrored, misread, misstated, no_light,
-    outside, roughly, rounded, shared, stretched, unsaid,
+    bent, by_own_light, colourless, copied, flickers, little_left, mirrored, misread, misstated,
+    no_light, outside, roughly, rounded, shared, stretched, unsaid,
 };
 use crate::scene::{Scene, SceneError};
 
@@ -151,6 +151,7 @@ pub fn import(
         ));
     }
     warnings.extend(by_own_light(columns.by_own_light));
+    warnings.extend(colourless(&shots.grey));
     let table = shots.response.as_ref();
     warnings.extend(table.and_then(|table| table.beyond(columns.highest.value)));
     warnings.extend(

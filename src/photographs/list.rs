@@ -67,6 +67,13 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
             format!("name its columns by {}", known.join(", ")),
         ));
     }
+    let twice = (1..head.len()).find(|k| head[..*k].contains(&head[*k]));
+    if let Some(k) = twice {
+        return Err(refused(
+            format!("{name} has two columns `{}`", head[k]),
+            "name every column once, and remove the one that does not count",
+        ));
+    }
     let mut tables = Vec::new();
     for (number, line) in lines {
         let values = cells(line);
@@ -195,6 +202,7 @@ mod tests {
             ("file,what\n", "column `what`"),
             ("file,x,y\na.png,1\n", "line 2"),
             ("file,spot\na.png,x\n", "spot `x`"),
+            ("file,spot,spot\na.png,1,2\n", "two columns `spot`"),
             ("file,gain\na.png,nan\n", "gain `nan`"),
             ("file,x,y\na.png,1,2\nb.png,1,\n", "line 3"),
             ("file,y\na.png,1\n", "without its x"),

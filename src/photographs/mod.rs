@@ -23,11 +23,13 @@
 mod account;
 mod columns;
 mod correct;
+mod dead;
 mod error;
 mod flicker;
 mod footprints;
 mod highest;
 mod import;
+mod kind;
 pub mod left_out;
 mod lens;
 mod list;

@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use super::dead::dead_pixels;
 use super::error::{PhotographError, refused};
 use super::flicker::Flicker;
+use super::kind::Kind;
 use super::noise::Repeated;
 use super::pattern::expanded;
 use super::plane::{Averaged, Chosen, Plane, linearised, same_full_scale, same_size};
 use super::read::Reader;
 use super::response::{Response, ResponseTable, response_table};
-use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
+use super::set::{ChannelName, DarkTable, Files, FrameTable, Set};
 use super::takes::{Take, each_spot, one_exposure, takes};
 use crate::image::{Channel, Samples};
 
@@ -32,6 +34,10 @@ pub(super) struct Shots<'a> {
     /// Averaged photographs of even radiance, and their dark frames.
     pub flat: Option<(Averaged, Option<Averaged>)>,
     pub dead: Vec<bool>,
+    /// What the photographs are, where a channel of them is chosen.
+    kind: Option<Kind>,
+    /// Dark frames and flat fields that do not tell the channels of photographs in colour apart.
+    pub grey: Vec<String>,
 }
 
 impl<'a> Shots<'a> {
@@ -47,6 +53,7 @@ impl<'a> Shots<'a> {
         let takes = takes(set, listed, folder)?;
         let first = takes.first();
         let first = first.ok_or_else(|| refused("there are no photographs", "name one or more"))?;
+        let name = reader.name(&first.path);
         let first = reader.photographs(&first.path)?;
         let first = first.first();
         let first =
@@ -63,6 +70,7 @@ impl<'a> Shots<'a> {
             Some(ChannelName::Blue) => Chosen::One(Channel::Blue),
             Some(ChannelName::Mean) => Chosen::Mean,
         };
+        let kind = (chosen != Chosen::Grey).then(|| Kind::of(name, first));
         let mut shots = Self {
             set,
             spots,
@@ -74,9 +82,13 @@ impl<'a> Shots<'a> {
             darks: Vec::new(),
             flat: None,
             dead: Vec::new(),
+            kind,
+            grey: Vec::new(),
         };
-        shots.dead = shots.dead_pixels(folder, reader)?;
-        let mut average = |files: &Files| shots.average(&expanded(folder, files)?, reader);
+        shots.dead = dead_pixels(set, shots.size, folder, reader)?;
+        let mut grey = Vec::new();
+        let mut average =
+            |files: &Files| shots.average(&expanded(folder, files)?, reader, &mut grey);
         let darks = match &set.dark {
             None => Vec::new(),
             Some(DarkTable::Files(files)) => {
@@ -95,7 +107,7 @@ impl<'a> Shots<'a> {
                 Some((average(files)?, dark))
             }
         };
-        (shots.darks, shots.flat) = (darks, flat);
+        (shots.darks, shots.flat, shots.grey) = (darks, flat, grey);
         Ok(shots)
     }
 
@@ -130,11 +142,13 @@ impl<'a> Shots<'a> {
         linearised(name, samples, chosen, &response, saturation)
     }
 
-    /// The mean of all photographs in `paths`.
+    /// The mean of all photographs in `paths`, dark frames or flat fields; `grey` gets the names of
+    /// those that miss the colour of the others.
     fn average(
         &self,
         paths: &[PathBuf],
         reader: &mut Reader<'_>,
+        grey: &mut Vec<String>,
     ) -> Result<Averaged, PhotographError> {
         let mut mean: Option<Averaged> = None;
         for path in paths {
@@ -145,7 +159,12 @@ impl<'a> Shots<'a> {
                     "name every file once",
                 ));
             }
-            for samples in reader.photographs(path)? {
+            let found = reader.photographs(path)?;
+            let is_missed = |kind: &Kind| found.iter().any(|s| kind.is_missed_by(s));
+            if self.kind.as_ref().is_some_and(is_missed) {
+                grey.push(name.clone());
+            }
+            for samples in found {
                 // A grey dark frame or flat field is that of every channel.
                 let chosen = match samples.channels.len() {
                     1 => Chosen::Grey,
@@ -164,48 +183,6 @@ impl<'a> Shots<'a> {
                 "leave it out, or name files",
             )
         })
-    }
-
-    fn dead_pixels(
-        &self,
-        folder: &Path,
-        reader: &mut Reader<'_>,
-    ) -> Result<Vec<bool>, PhotographError> {
-        let [width, height] = self.size;
-        let mut dead = vec![false; width * height];
-        match &self.set.dead {
-            None => {}
-            Some(DeadTable::Pixels(pixels)) => {
-                for [u, v] in pixels {
-                    if *u >= width || *v >= height {
-                        return Err(refused(
-                            format!(
-                                "the dead pixel ({u}, {v}) is not in a photograph of {width} × {height}"
-                            ),
-                            "give column and row from (0, 0), the upper left one",
-                        ));
-                    }
-                    dead[u + v * width] = true;
-                }
-            }
-            Some(DeadTable::Picture(name)) => {
-                let found = reader.photographs(&folder.join(name))?;
-                let found = found.first().filter(|s| [s.width, s.height] == self.size);
-                let found = found.ok_or_else(|| {
-                    refused(
-                        format!("{name} is not of {width} × {height} pixels"),
-                        "give a picture of dead pixels of the photographs' size",
-                    )
-                })?;
-                for (dead, pixel) in dead
-                    .iter_mut()
-                    .zip(found.values.chunks(found.channels.len()))
-                {
-                    *dead = pixel.iter().any(|x| *x != 0.0);
-                }
-            }
-        }
-        Ok(dead)
     }
 
     /// The dark frames of the shortest exposure time: what is above them is counted in electrons,
@@ -250,7 +227,12 @@ impl<'a> Shots<'a> {
         reader: &mut Reader<'_>,
         visit: impl FnMut(usize, &Take, Averaged) -> Result<(), PhotographError>,
     ) -> Result<(), PhotographError> {
-        let plane = |name: &str, samples: &Samples| self.plane(name, samples, self.chosen);
+        let plane = |name: &str, samples: &Samples| {
+            if let Some(kind) = &self.kind {
+                kind.refuse_other(name, samples)?;
+            }
+            self.plane(name, samples, self.chosen)
+        };
         let repeats = self.set.repeats.map_or(1, |n| n as usize);
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }

@@ -143,6 +143,20 @@ pub(super) fn outside(marks: &[Mark], size: [usize; 2]) -> Option<String> {
     ))
 }
 
+/// That dark frames or flat fields are grey, of photographs in colour.
+pub(super) fn colourless(names: &[String]) -> Option<String> {
+    let first = names.first()?;
+    let more = match names.len() {
+        1 => String::new(),
+        n => format!(" and {} others", n - 1),
+    };
+    Some(format!(
+        "dark frames or flat fields are grey and the photographs in colour ({first}{more}): the camera's channels \
+         may differ in dark level or falloff, and what these hold is taken for every channel alike, which no \
+         standard error holds; give them in colour"
+    ))
+}
+
 /// That files of different photographs are the same to the byte.
 pub(super) fn copied<'a>(takes: impl Iterator<Item = &'a SourceFile>) -> Option<String> {
     let mut first: BTreeMap<&str, &str> = BTreeMap::new();

@@ -121,31 +121,28 @@ pub(super) fn gaussian(estimate: &DVector<f64>, sigma: &DVector<f64>, confidence
     }
 }
 
-/// What [`simultaneous`] needs: residuals in standard deviations, and a scale.
+/// What [`simultaneous`] needs: residuals in standard deviations.
 pub(super) fn simultaneous_allowed<'a>(
     method: Method,
     problem: &Problem<'a>,
     options: &Options,
 ) -> Result<&'a DMatrix<f64>, RecoveryError> {
     let stderr = problem.noise().ok_or(without_noise(method))?;
-    let refuse = |what, cure| Err(RecoveryError::NotForMethod { method, what, cure });
     if options.weighting == WeightRule::Unweighted {
-        return refuse(
-            "has bands only where entries are weighted by their noise",
-            "leave the weighting to the noise",
-        );
-    }
-    if problem.nuisance.free_scale {
-        return refuse(
-            "has no bands with a free scale",
-            "give the scale, or ask for the bands of joint-gp",
-        );
+        return Err(RecoveryError::NotForMethod {
+            method,
+            what: "has bands only where entries are weighted by their noise",
+            cure: "leave the weighting to the noise",
+        });
     }
     Ok(stderr)
 }
 
 /// Why a computation that was stopped has none.
 const STOPPED: &str = "has no bands: it was stopped before they were found";
+/// Why an estimate between bounds has none that is known up to a factor.
+pub(super) const UNSCALED: &str = "has no bands with a free scale: the picture is relative to its brightest \
+                        element, whose own error they would leave out";
 /// Why a biased estimate has none.
 pub(super) const BIASED: &str = "has no bands: regularisation, dropped directions or a free scale bias the picture \
                                  by an amount that the photographs do not tell";

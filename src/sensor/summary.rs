@@ -29,10 +29,10 @@ pub struct Summary {
     /// Dark current and ambient light that stay in every entry because no dark frames were
     /// subtracted, W.
     pub pedestal: f64,
-    /// Part of the variance that comes from the dark frames, mean over the entries: an error that
-    /// all spots of a pixel have in common.
+    /// Part of the variance that comes from the dark frames, mean over the entries within range: an
+    /// error that all spots of a pixel have in common.
     pub common: f64,
-    /// Part of the variance that is the render's own error, mean over the entries.
+    /// Part of the variance that is the render's own error, mean over the entries within range.
     pub render: f64,
     /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None`
     /// without such entries or without noise.
@@ -47,23 +47,22 @@ impl Summary {
         let electrons = sensor.expected(light, exposure).electrons;
         let (pixels, spots) = light.shape();
         let within = |at: &usize| exposed.range[*at] == Range::Within;
-        let snr: Vec<f64> = (0..pixels * spots)
-            .filter(within)
-            .map(|at| light.signal(at % pixels, at / pixels) / exposed.stderr[at])
+        let counted: Vec<usize> = (0..pixels * spots).filter(within).collect();
+        let snr: Vec<f64> = counted
+            .iter()
+            .map(|at| light.signal(at % pixels, at / pixels) / exposed.stderr[*at])
             .collect();
         let laws = Law::of(sensor.figures(), light, exposure);
-        let shares = (exposed.bracket.iter().zip(&exposed.stderr)).map(|(k, s)| {
-            if *s > 0.0 {
-                laws[*k].common() / (s * s)
-            } else {
-                0.0
-            }
+        // Of the whole by the law: a stated variance is that of clipped counts, too.
+        let shares = counted.iter().map(|at| {
+            let (pixel, spot) = (at % pixels, at / pixels);
+            let law = &laws[exposed.bracket[*at]];
+            let own = light.render(pixel, spot).map_or(0.0, |(own, _)| own * own);
+            let all = law.variance(light.of_laser(pixel, spot)) + own;
+            [law.common(), own].map(|part| if all > 0.0 { part / all } else { 0.0 })
         });
-        let entries = (0..pixels * spots).zip(&exposed.stderr);
-        let renders = entries.map(|(at, s)| match light.render(at % pixels, at / pixels) {
-            Some((own, _)) if *s > 0.0 => (own / s) * (own / s),
-            _ => 0.0,
-        });
+        let [common, render] = shares.fold([0.0; 2], |sum, s| [sum[0] + s[0], sum[1] + s[1]]);
+        let mean = |sum: f64| sum / counted.len().max(1) as f64;
         let noisy = exposed.stderr.iter().all(|s| *s > 0.0) && !snr.is_empty();
         Self {
             entries: pixels * spots,
@@ -76,8 +75,8 @@ impl Summary {
                 .map(|k| exposed.bracket.iter().filter(|b| **b == k).count())
                 .collect(),
             pedestal: laws[0].pedestal(),
-            common: shares.sum::<f64>() / (pixels * spots) as f64,
-            render: renders.sum::<f64>() / (pixels * spots) as f64,
+            common: mean(common),
+            render: mean(render),
             snr_mean: noisy.then(|| snr.iter().sum::<f64>() / snr.len() as f64),
             snr_max: noisy.then(|| snr.iter().copied().fold(0.0, f64::max)),
         }

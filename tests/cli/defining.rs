@@ -48,6 +48,10 @@ fn a_definition_that_means_nothing_is_refused() {
             &["door", "wall"],
         ),
         ("run bench -D camera.pixels=[0,4] -o out", &["pixels"]),
+        (
+            "scene check bench -D laser.power=5mW -D name=other -D laser.power=10mW",
+            &["-D gives laser.power twice", "cure: "],
+        ),
     ] {
         workspace.refuses(line, words);
     }

@@ -278,11 +278,16 @@ fn light_that_stays_and_noise_that_is_shared_are_said() {
         let ended = workspace.phicam(&line).exits(0);
         assert!(ended.stderr.contains(words), "{}", ended.account());
     }
-    // Read noise, dark current and rounding of one frame, electrons², over those of each entry.
+    // Read noise, dark current and rounding of one frame, electrons², over those of each entry: of
+    // the dark frame, of its own with the light's, and of the render.
     let electrons = 0.79 * 1e-3 * 632.8e-9 / (6.626_070_15e-34 * 299_792_458.0);
     let dark = 12.6 * 12.6 + 0.080 * 1e-3 + 1.413 * 1.413 / 12.0;
-    let stderr = workspace.matrix("done/exposed/phi.stderr.npy");
-    let share = stderr.map(|s| dark / (s * electrons).powi(2)).mean();
+    let [clean, own] = ["phi", "phi.stderr"].map(|name| {
+        let matrix = workspace.matrix(&format!("done/{name}.npy"));
+        matrix * electrons
+    });
+    let share = clean.zip_map(&own, |light, own| dark / (light + 2.0 * dark + own * own));
+    let share = share.mean();
     let account = workspace.json("done/exposed/exposure.json");
     let found = account["result"]["common"].as_f64().unwrap();
     assert!((found / share - 1.0).abs() < 1e-9, "{found} {share}");
@@ -290,6 +295,19 @@ fn light_that_stays_and_noise_that_is_shared_are_said() {
         .phicam("expose done --sensor ccd --exposure 0.001 --dark-frames 2000 --replace")
         .exits(0);
     assert!(!quiet.stderr.contains("warning"), "{}", quiet.account());
+    // Of dark frames that are full the counts say nothing, and no part is more than the whole.
+    let full = "expose done --sensor ccd --exposure 0.001 --dark-frames 1 --ambient 1e-6 --replace";
+    let full = workspace.phicam(full).exits(0);
+    assert!(full.stderr.contains("48 of 48 entries are saturated"));
+    assert!(
+        !full.stderr.contains("of the variance"),
+        "{}",
+        full.account()
+    );
+    let account = workspace.json("done/exposed/exposure.json");
+    for part in ["common", "render"] {
+        assert_eq!(account["result"][part], 0.0, "{part}");
+    }
 }
 
 #[test]

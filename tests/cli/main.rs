@@ -17,6 +17,7 @@ mod forged_kinds;
 mod helping;
 mod import_round_trip;
 mod importing;
+mod importing_colours;
 mod interruption;
 mod killing;
 mod large_photographs;

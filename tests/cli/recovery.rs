@@ -295,6 +295,27 @@ fn a_method_without_bands_is_kept_beside_one_that_has_them() {
     assert_eq!(bands, [("joint-tv", false), ("joint", true)]);
 }
 
+/// A method that was asked for by name and gave nothing is told, whatever remarks are wanted; one
+/// of the usual methods is a remark. A free scale costs a picture its bands alone.
+#[test]
+fn what_gave_nothing_though_it_was_asked_for_is_told() {
+    let workspace = with_run();
+    let line = "-q recover done --method left-inverse,joint --elements 6x6 --noise 0.2";
+    let ended = workspace.phicam(line).exits(0);
+    let words = "warning: left-inverse: left-inverse does not exist";
+    assert!(ended.stderr.contains(words), "{}", ended.account());
+    let usual = "-q recover done --elements 6x6 --noise 0.2";
+    let ended = workspace.phicam(usual).exits(0);
+    assert_eq!(ended.stderr, "", "{}", ended.account());
+    let line = "-q recover done --method joint-unbounded,joint --elements 2x2 --noise 0.2 --free-scale --bands 0.9 --json";
+    let ended = workspace.phicam(line);
+    assert_eq!(ended.stderr, "", "{}", ended.account());
+    let found = objects(ended);
+    assert_eq!(found[1]["method"], "joint");
+    assert!(found[1]["bands"].is_null() && found[1].to_string().contains("has no bands with a"));
+    assert!(!workspace.path("done/recovered/joint.lower.npy").exists());
+}
+
 #[test]
 fn bands_are_files_of_their_own() {
     let workspace = with_run();

@@ -214,3 +214,50 @@ fn what_is_not_the_surface_s_light_is_left_out_or_estimated() {
         &["every entry of phi is left out"],
     );
 }
+
+/// A mask of NumPy's truths or integers is the mask of the same entries as numbers.
+#[test]
+fn a_mask_may_hold_truths_or_integers() {
+    let workspace = with_model();
+    let model = workspace.matrix("done/model/phi.npy");
+    let (pixels, spots) = model.shape();
+    let is_left_out = |p: usize, l: usize| (5 * p + 3 * l) % 11 == 0;
+    let spoilt = Matrix::from_fn(pixels, spots, |p, l| {
+        model[(p, l)] * if is_left_out(p, l) { 1000.0 } else { 1.0 }
+    });
+    npy::write(&workspace.path("spoilt.npy"), &spoilt).unwrap();
+    let flags = Matrix::from_fn(pixels, spots, |p, l| f64::from(is_left_out(p, l)));
+    npy::write(&workspace.path("f8.npy"), &flags).unwrap();
+    let write = |name: &str, of: &str, shape: &str, entry: &dyn Fn(bool) -> Vec<u8>| {
+        let head = format!("{{'descr': '{of}', 'fortran_order': False, 'shape': ({shape}), }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((head.len() as u16).to_le_bytes());
+        bytes.extend(head.bytes());
+        let places = (0..pixels).flat_map(|p| (0..spots).map(move |l| (p, l)));
+        bytes.extend(places.flat_map(|(p, l)| entry(is_left_out(p, l))));
+        workspace.write(name, bytes);
+    };
+    let shape = format!("{pixels}, {spots}");
+    write("truths.npy", "|b1", &shape, &|is| vec![u8::from(is)]);
+    write("integers.npy", ">i2", &shape, &|is| {
+        (if is { -7i16 } else { 0 }).to_be_bytes().to_vec()
+    });
+    let line = |mask: &str| {
+        format!(
+            "recover done --phi spoilt.npy --noise 0.01 --method joint --left-out {mask}.npy -o {mask}"
+        )
+    };
+    for mask in ["f8", "truths", "integers"] {
+        let _ = workspace.phicam(&line(mask)).exits(0);
+    }
+    for mask in ["truths", "integers"] {
+        let of = |mask: &str| workspace.read(&format!("{mask}/joint.npy"));
+        assert!(of(mask) == of("f8"), "{mask}");
+    }
+    let cube = format!("2, {}, {spots}", pixels / 2);
+    write("cube.npy", "|b1", &cube, &|is| vec![u8::from(is)]);
+    workspace.refuses(&line("cube"), &["has the shape [2,", "cure: "]);
+    let turned = format!("{spots}, {pixels}");
+    write("turned.npy", "|b1", &turned, &|is| vec![u8::from(is)]);
+    workspace.refuses(&line("turned"), &["24 × 64", "64 pixels"]);
+}

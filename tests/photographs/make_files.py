@@ -32,6 +32,12 @@ write("grey32-s16777259.tif", (16777259 * grey).astype("u4"))
 write("float32-s0.25-packbits.tif", (0.25 * grey).astype("f4"), compression="packbits")
 write("colour16-s257-planar.tif", np.moveaxis((257 * colour).astype("u2"), 2, 0), photometric="rgb", planarconfig="separate")
 write("colour8-s1.tif", colour.astype("u1"), photometric="rgb")
+planes = lambda rows, columns: np.moveaxis(values(3, 1, rows, columns)[0].astype("u1"), 2, 0)
+apart = {"photometric": "rgb", "planarconfig": "separate", "tile": (16, 16)}
+write("colour8-s1-32x48-tiled-planes.tif", planes(32, 48), compression="zlib", **apart)
+write("tiled-planes-cut.tif", planes(5, 7), **apart)
+# Whole, as tifffile reads it, and its LZW stream ends otherwise than the crate expects.
+write("tiled-lzw.tif", values(1, 1, 17, 17)[0, :, :, 0].astype("u1"), tile=(16, 16), compression="lzw", predictor=True)
 write("pages8-s1-3.tif", stack.astype("u1"), photometric="minisblack")
 write("grey8-s1-turned-6.tif", np.rot90(grey).astype("u1"), extratags=[(274, 3, 1, 6, True)])
 write("white-is-zero.tif", grey.astype("u1"), photometric="miniswhite")

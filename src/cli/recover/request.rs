@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use super::is_own;
 use crate::cli::args::RecoverArgs;
 use crate::cli::beside::{
-    Beside, PhotographSize, left_out, mask, refuse_clipped, relative_errors, warn_of_exact,
-    warn_of_untrusted,
+    Beside, PhotographSize, relative_errors, warn_of_exact, warn_of_untrusted,
 };
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_photographs, read_stderr};
+use crate::cli::mask::{left_out, mask, refuse_clipped};
 use crate::cli::recover_memory::{self, Errors, Strips};
 use crate::cli::recover_options::uncertainty;
 use crate::cli::recovered::recovering;

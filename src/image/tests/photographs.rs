@@ -37,7 +37,7 @@ fn expected([columns, rows]: [usize; 2], channels: usize, page: usize, step: f64
 fn samples_are_those_that_were_saved() {
     let (grey, colour) = (1, 3);
     type Saved = (&'static [u8], [usize; 2], usize, f64, Option<f64>);
-    let all: [Saved; 8] = [
+    let all: [Saved; 9] = [
         (
             file!("grey8-s1-strips-lzw.tif"),
             [7, 5],
@@ -81,6 +81,13 @@ fn samples_are_those_that_were_saved() {
             Some(65535.0),
         ),
         (file!("colour8-s1.tif"), [7, 5], colour, 1.0, Some(255.0)),
+        (
+            file!("colour8-s1-32x48-tiled-planes.tif"),
+            [48, 32],
+            colour,
+            1.0,
+            Some(255.0),
+        ),
         (
             file!("grey8-s1-turned-6.tif"),
             [7, 5],
@@ -148,12 +155,14 @@ fn integers_stay_integers_and_what_is_no_light_is_refused() {
             .all(|(x, c)| *x == f64::from(c))
     );
     use super::bytes;
-    let refused: [(&[u8], &str); 7] = [
+    let refused: [(&[u8], &str); 9] = [
         (&bytes::RGBA, "alpha"),
         (&bytes::PALETTE, "palette"),
         (&bytes::BITS, "1 bits"),
         (file!("white-is-zero.tif"), "zero is white"),
         (file!("alpha.tif"), "without alpha"),
+        (file!("tiled-planes-cut.tif"), "save it in strips"),
+        (file!("tiled-lzw.tif"), "uncompressed or with Deflate"),
         (&bytes::JPEG_CMYK, "save it as RGB"),
         (b"II*\0", "damaged"),
     ];

@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
-use crate::recovery::recover;
+use crate::recovery::{Nuisance, recover};
 
 fn bands(method: Method, elements: usize, noise: f64, seed: u64) -> (Bands, usize) {
     let bench = Bench::new(6.0, elements, 8);
@@ -171,6 +171,33 @@ fn what_has_no_bands_says_why() {
         let problem = problem.with_grids(&[[2, 2]]).unwrap();
         let found = recover(method, &problem, &options).unwrap();
         assert_eq!((found.bands, found.no_bands), (None, Some(ASSUMED)));
+    }
+}
+
+/// A free scale leaves the picture between bounds without bands, and the picture is the same as
+/// without asking for them.
+#[test]
+fn a_picture_of_a_free_scale_is_kept_without_its_bands() {
+    let bench = Bench::new(6.0, 4, 8);
+    let exact = bench.phi(&bench.board(2));
+    let stderr = &exact * 1e-3;
+    let nuisance = Nuisance {
+        free_scale: true,
+        ..Nuisance::default()
+    };
+    let problem = Problem::new(&exact, &bench.c, &bench.d, Some(&stderr)).unwrap();
+    let problem = problem.with_nuisance(nuisance).unwrap();
+    for method in [Method::Joint, Method::Nnls] {
+        let of = |bands| {
+            let options = Options {
+                bands,
+                ..Options::default()
+            };
+            recover(method, &problem, &options).unwrap()
+        };
+        let (asked, plain) = (of(Some(0.95)), of(None));
+        assert_eq!((asked.bands, asked.no_bands), (None, Some(UNSCALED)));
+        assert_eq!(asked.reflectance, plain.reflectance, "{method}");
     }
 }
 

@@ -1,11 +1,13 @@
 //! Least squares over all pixels and spots with reflectances that a surface can have: 0 ≤ ρ ≤ 1
 //! (`joint`), or ρ ≥ 0 alone (`nnls`).
 
+use nalgebra::DMatrix;
+
 use super::reduced::Reduced;
 use super::stacked::stack;
 use super::weights;
 use crate::num::quadratic::{Bounds, box_least_squares};
-use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, bands};
+use crate::recovery::{Bands, Method, Options, Problem, Recovered, RecoveryError, bands};
 
 /// `method` is [`Method::Joint`] or [`Method::Nnls`].
 pub(in crate::recovery) fn recover(
@@ -22,13 +24,11 @@ pub(in crate::recovery) fn recover(
     let asked = match options.bands {
         Some(confidence) => {
             let stderr = bands::simultaneous_allowed(method, problem, options)?;
-            // Each entry by its own error: separable weights would not make them all units.
-            let (pixels, spots) = problem.phi.shape();
-            let fitted = weights::fit(Some(stderr), pixels, spots);
-            let exact = stack(problem, |p, l| fitted.root(problem, Some(stderr), p, l))?.triangle;
-            let found =
-                bands::simultaneous(&exact.r, &exact.d, &bounds, confidence, problem.control)?;
-            Some(found)
+            Some(if problem.nuisance.free_scale {
+                Err(bands::UNSCALED)
+            } else {
+                region(problem, stderr, &bounds, confidence)?
+            })
         }
         None => None,
     };
@@ -40,6 +40,20 @@ pub(in crate::recovery) fn recover(
         None => (None, None),
     };
     Ok(found)
+}
+
+/// The bands of all elements at once, each entry by its own error: separable weights would not make
+/// them all units.
+fn region(
+    problem: &Problem<'_>,
+    stderr: &DMatrix<f64>,
+    bounds: &Bounds,
+    confidence: f64,
+) -> Result<Result<Bands, &'static str>, RecoveryError> {
+    let (pixels, spots) = problem.phi.shape();
+    let fitted = weights::fit(Some(stderr), pixels, spots);
+    let exact = stack(problem, |p, l| fitted.root(problem, Some(stderr), p, l))?.triangle;
+    bands::simultaneous(&exact.r, &exact.d, bounds, confidence, problem.control)
 }
 
 #[cfg(test)]
