@@ -37,11 +37,10 @@ pub(super) trait Tasks: Sync {
     fn deliver(&self, outputs: &[Vec<u8>], folder: &Path) -> Result<Outcome, Failure>;
 }
 
-/// All that so many tasks of a command depend on; `words` are what the command says.
-pub(super) fn identity(
+/// What a command asks for, of which scene; `words` are what it says.
+pub(super) fn request(
     scene: Option<&Scene>,
     words: impl IntoIterator<Item = (String, String)>,
-    tasks: usize,
 ) -> Identity {
     let none = "none".to_owned();
     let scene = scene.map(|s| {
@@ -57,8 +56,12 @@ pub(super) fn identity(
         .with("scene's digest", hash)
         .with("scene's text", text);
     let words = words.into_iter();
-    words
-        .fold(scene, |all, (name, value)| all.with(&name, value))
+    words.fold(scene, |all, (name, value)| all.with(&name, value))
+}
+
+/// All that so many tasks of a command depend on, which asks for `request`.
+pub(super) fn identity(request: Identity, tasks: usize) -> Identity {
+    request
         .with("tasks", tasks)
         .with("program", version())
         .with("layout of tasks", LAYOUT)

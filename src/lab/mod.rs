@@ -174,6 +174,7 @@ mod light_law;
 mod likelier;
 mod limit;
 mod located;
+mod loss;
 mod measured;
 mod measures;
 mod misplaced;

@@ -346,17 +346,17 @@ fn a_layout_is_tables_a_drawing_and_a_scene() {
 fn a_sweep_follows_the_law_of_one_element() {
     let workspace = Workspace::with_scenes();
     let line = "study sweep tiny.toml --elements 1 --noise 0.5";
-    let steps = |folder: &str, key: &str, values: &str| -> Vec<serde_json::Value> {
+    let steps = |folder: &str, key: &str, values: &str, said: &str| -> Vec<serde_json::Value> {
         let line = format!("{line} --key {key} --values {values} -o {folder}");
         let ended = workspace.phicam(&line).exits(0);
-        says(&ended, &[key, "least of the prior variance"]);
+        says(&ended, &[key, said]);
         workspace.json(&format!("{folder}/sweep.json"))["steps"]
             .as_array()
             .unwrap()
             .clone()
     };
     let left = |step: &serde_json::Value| step["risk"].as_f64().unwrap();
-    let power = steps("p", "laser.power", "5mW,0.01");
+    let power = steps("p", "laser.power", "5mW,0.01", "makes no difference");
     for step in &power {
         let law = 1.0 / (1.0 + 48.0 / 0.25);
         assert!((left(step) - law).abs() < 1e-9 * law, "{step} and {law}");
@@ -367,7 +367,8 @@ fn a_sweep_follows_the_law_of_one_element() {
     assert_eq!(workspace.text("p/sweep.csv").lines().count(), 3);
     told(&workspace, "p", &["laser.power of bench", "<metadata>"]);
     // The same camera with 5 and with 9 columns of pixels, 2 rows and 8 spots.
-    for (step, columns) in steps("c", "camera.pixels.0", "5,9").iter().zip([5.0, 9.0]) {
+    let pixels = steps("c", "camera.pixels.0", "5,9", "least of the prior variance");
+    for (step, columns) in pixels.iter().zip([5.0, 9.0]) {
         let law = 1.0 / (1.0 + 16.0 * columns / 0.25);
         assert!((left(step) - law).abs() < 1e-9 * law, "{step} and {law}");
     }
@@ -382,4 +383,29 @@ fn a_sweep_follows_the_law_of_one_element() {
     ] {
         workspace.refuses(&format!("study sweep tiny.toml -o d {wrong}"), &words);
     }
+}
+
+/// A finished study stays until --replace says otherwise: other settings, another scene and another
+/// study are refused, the same command is not.
+#[test]
+fn a_finished_study_is_replaced_by_no_other() {
+    let workspace = Workspace::with_scenes();
+    let line = "study sweep tiny.toml --elements 1 --key laser.power --values 1,2 -o s";
+    let _ = workspace.phicam(line).exits(0);
+    let found = workspace.text("s/sweep.json");
+    for (other, word) in [
+        (format!("{line} --noise 0.02"), "--noise"),
+        (line.replace("tiny", "small"), "scene"),
+        ("study spots tiny.toml -o s".to_owned(), "study is sweep"),
+    ] {
+        workspace.refuses(&other, &["another study", word, "--replace", "cure"]);
+        assert_eq!(workspace.text("s/sweep.json"), found, "{other}");
+    }
+    let _ = workspace.phicam(line).exits(0);
+    assert_eq!(workspace.text("s/sweep.json"), found);
+    let other = format!("{line} --noise 0.02");
+    let _ = workspace.phicam(&format!("{other} --replace")).exits(0);
+    assert_ne!(workspace.text("s/sweep.json"), found);
+    let _ = workspace.phicam(&other).exits(0);
+    workspace.refuses(line, &["another study", "--noise"]);
 }

@@ -47,7 +47,8 @@ FOLDERS = [
         ],
     ),
     Folder("part", [f"render t.toml -o part {PATHS}", "validate part", "stack part -o again"]),
-    Folder("study", [NOISE, "study spots t.toml -o study"]),
+    Folder("study", [NOISE]),
+    Folder("spots", ["study spots t.toml -o spots"]),
     Folder("published", [REPRODUCE]),
     Folder(
         "job",
@@ -79,7 +80,7 @@ def set_up(program: Program) -> None:
     program.done("calibrate run --free hinge.angle=0.1")
     program.done(f"render t.toml -o part {PATHS} --spots 0..2")
     program.done(NOISE)
-    program.done("study spots t.toml -o study")
+    program.done("study spots t.toml -o spots")
     program.done(REPRODUCE)
     program.done(f"plan t.toml -o job --shards 2 {PATHS}")
     for index in [0, 1]:

@@ -78,7 +78,7 @@ fn command(study: &'static Registered) -> Command {
             Arg::new("replace")
                 .long("replace")
                 .action(ArgAction::SetTrue)
-                .help("Replace what is kept of this study with other settings"),
+                .help("Replace results of other settings, of another scene or of another study"),
         )
         .arg(
             Arg::new("json")

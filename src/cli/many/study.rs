@@ -11,7 +11,7 @@ use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::process::pool;
 use crate::cli::run_folder::RunFolder;
-use crate::cli::tasks::{Tasks, compute, identity};
+use crate::cli::tasks::{Tasks, compute, identity, request};
 use crate::cli::{Outcome, refuse_undefinable, reproduce, study};
 use crate::jobs::{Checkpoint, Identity, Parts, Shards};
 use crate::scene::Scene;
@@ -85,7 +85,7 @@ impl Work for Study {
 
     fn identity(&self) -> Identity {
         let words = [("command".to_owned(), format!("{:?}", self.arguments))];
-        identity(self.scene.as_ref(), words, self.tasks.count())
+        identity(request(self.scene.as_ref(), words), self.tasks.count())
     }
 
     fn blocks(&self) -> u64 {

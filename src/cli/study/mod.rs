@@ -1,5 +1,6 @@
 //! `phicam study`: experiments around a scene.
 
+mod asked;
 mod study_run;
 
 use super::Outcome;

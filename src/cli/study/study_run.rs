@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::asked::{self, CURE};
 use crate::cli::Outcome;
 use crate::cli::args::StudyArgs;
 use crate::cli::cleanup::remove_named;
@@ -13,7 +14,7 @@ use crate::cli::interrupt::{SignalGuard, control};
 use crate::cli::output;
 use crate::cli::process::{pool, process, version};
 use crate::cli::run_folder::{REPORT, RunFolder};
-use crate::cli::tasks::{Tasks, compute, identity};
+use crate::cli::tasks::{Tasks, compute, identity, request};
 use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
 use crate::lab::{AnyStudy, Sharing, Work};
 use crate::report::Invocation;
@@ -59,6 +60,7 @@ impl StudyRun {
         output::refuse_run(&self.output)?;
         if !self.replace {
             refuse_other(&path, &identity, all.end, console)?;
+            asked::refuse_other(&self.output, &self.asked())?;
         }
         let scene = &self.invocation.scene;
         console.warn(scene);
@@ -104,9 +106,14 @@ impl StudyRun {
 
     /// All that the outputs depend on.
     fn identity(&self) -> Identity {
+        identity(self.asked(), self.study.tasks())
+    }
+
+    /// Study, scene and options.
+    fn asked(&self) -> Identity {
         let study = ("study".to_owned(), self.name.to_owned());
         let words = [study].into_iter().chain(self.invocation.options.clone());
-        identity(Some(&self.invocation.scene), words, self.study.tasks())
+        request(Some(&self.invocation.scene), words)
     }
 }
 
@@ -140,7 +147,7 @@ fn refuse_other(
                 "{} holds results of another study (its {name} is {found}; now asked for: {expected})",
                 path.display()
             ),
-            "give the same settings, choose another folder (-o), or replace them (--replace)",
+            CURE,
         )),
         Err(JobError::Spoilt { path, what }) => {
             let path = path.display();
@@ -189,6 +196,10 @@ impl Tasks for StudyRun {
         let found = self.study.merge(outputs, control());
         let found = found.map_err(Failure::of)?;
         ensure_writable(folder)?;
+        if !self.replace {
+            asked::refuse_other(folder, &self.asked())?;
+        }
+        asked::keep(folder, &self.asked())?;
         deliver(self.name, &found, folder, &self.invocation, self.json)
     }
 }

@@ -9,13 +9,11 @@ use crate::num::digits::figure;
 const SHORT: f64 = 3.0;
 
 impl CoverageRow {
-    /// Whether its bands cover less than `confidence`; none where it has no bands.
+    /// Whether its bands cover less than `confidence`; none where it has no bands, or of one draw,
+    /// which tells nothing of how often.
     fn falls_short(&self, confidence: f64) -> Option<bool> {
-        let covered = self.covered?;
-        Some(
-            self.stderr
-                .is_some_and(|s| covered < confidence - SHORT * s),
-        )
+        let (covered, stderr) = self.covered.zip(self.stderr)?;
+        Some(covered < confidence - SHORT * stderr)
     }
 
     /// What its bands cover, in percent.
@@ -38,20 +36,31 @@ impl CoverageRow {
 
 impl Describe for Coverage {
     fn describe(&self) -> Finding {
-        let named = |short: bool| -> Vec<String> {
-            let own = self
-                .rows
-                .iter()
-                .filter(|r| r.falls_short(self.confidence) == Some(short));
-            own.map(CoverageRow::words).collect()
+        let named = |short: Option<bool>| {
+            let own = self.rows.iter().filter(|r| r.covered.is_some());
+            let own = own.filter(|r| r.falls_short(self.confidence) == short);
+            own.map(CoverageRow::words).collect::<Vec<_>>()
         };
-        let (fine, short) = (named(false), named(true));
-        let failing = match short.as_slice() {
-            [] => String::new(),
-            some => format!(
-                "; these fall short by more than three standard errors: {}",
-                listed(some)
+        let clauses = [
+            (
+                "are not shown to cover the true reflectance less often than stated",
+                named(Some(false)),
             ),
+            (
+                "fall short by more than three standard errors",
+                named(Some(true)),
+            ),
+            ("tell nothing, as of one draw", named(None)),
+        ];
+        let said: Vec<String> = clauses
+            .iter()
+            .filter(|(_, methods)| !methods.is_empty())
+            .map(|(what, methods)| format!("{what}: {}", listed(methods)))
+            .collect();
+        let tone = match &clauses {
+            [_, (_, short), _] if !short.is_empty() => Tone::Bad,
+            [(_, fine), ..] if !fine.is_empty() => Tone::Good,
+            _ => Tone::Plain,
         };
         let silent = match self.rows.iter().filter(|r| r.covered.is_none()).count() {
             0 => String::new(),
@@ -103,16 +112,15 @@ impl Describe for Coverage {
         };
         Finding {
             title: format!("How often bands cover the truth: {}", self.scene),
-            tone: if short.is_empty() {
-                Tone::Good
-            } else {
-                Tone::Bad
-            },
+            tone,
             sentence: format!(
-                "Bands of {stated} on {} at a noise of {noise} cover the true reflectance at \
-                 least as often as stated: {}{failing}.{silent}",
+                "Of {} draws of a noise of {noise} on {}, bands of {stated} {}.{silent}",
+                self.seeds,
                 self.scene,
-                listed(&fine)
+                match said.as_slice() {
+                    [] => "are none".to_owned(),
+                    said => said.join("; these "),
+                }
             ),
             tables: vec![table],
             ..Finding::default()

@@ -6,39 +6,46 @@ use crate::recovery::{BandKind, Bands};
 
 #[test]
 fn bands_that_cover_too_little_are_named() {
-    let row = |method: &str, covered: Option<f64>| CoverageRow {
+    let row = |method: &str, covered: Option<f64>, stderr| CoverageRow {
         method: method.to_owned(),
-        bands: None,
-        failed: 0,
-        refuted: 0,
         covered,
-        stderr: Some(0.01),
-        least: None,
-        together: None,
-        bias: None,
-        width: None,
-        reason: None,
+        stderr,
+        ..CoverageRow::default()
     };
-    let found = Coverage {
-        scene: "bench".to_owned(),
-        scene_hash: String::new(),
-        noise: 0.01,
-        confidence: 0.95,
-        seeds: 10,
-        elements: 4,
-        rows: vec![
-            row("joint", Some(0.93)),
-            row("tsvd", Some(0.6)),
-            row("none", None),
-        ],
+    let of = |rows: Vec<CoverageRow>| {
+        let found = Coverage {
+            scene: "bench".to_owned(),
+            scene_hash: String::new(),
+            noise: 0.01,
+            confidence: 0.95,
+            seeds: 10,
+            elements: 4,
+            rows,
+        };
+        found.describe()
     };
-    let found = found.describe();
+    let found = of(vec![
+        row("joint", Some(0.93), Some(0.01)),
+        row("tsvd", Some(0.6), Some(0.01)),
+        row("none", None, None),
+    ]);
     assert_eq!(found.tone, Tone::Bad);
     for words in [
-        "at least as often as stated: joint 93.0 % ± 1.0;",
+        "Of 10 draws",
+        "are not shown to cover the true reflectance less often than stated: joint 93.0 % ± 1.0;",
         "standard errors: tsvd 60.0 % ± 1.0. 1 of the methods gave no bands.",
     ] {
         assert!(found.sentence.contains(words), "{}", found.sentence);
+    }
+    // One draw tells nothing of how often, be it of all elements or of few.
+    for covered in [0.0, 1.0] {
+        let found = of(vec![row("pinv", Some(covered), None)]);
+        assert_eq!(found.tone, Tone::Plain);
+        let said = format!(
+            "tell nothing, as of one draw: pinv {:.1} %.",
+            100.0 * covered
+        );
+        assert!(found.sentence.ends_with(&said), "{}", found.sentence);
     }
 }
 

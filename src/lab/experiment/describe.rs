@@ -1,10 +1,10 @@
 //! What the re-enacted experiment says, from its numbers alone.
 
+mod tables;
+
 use super::results::{Experiment, Reading, Setting, Threshold};
 use crate::lab::ensemble::Spread;
-use crate::lab::finding::{
-    Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Place, Plot, Table,
-};
+use crate::lab::finding::{Axis, Curve, Describe, Figure, Finding, Mark, Plot};
 use crate::num::digits::{figure, significant};
 
 /// Neighbouring settings of a larger ratio are named beside a threshold between them.
@@ -20,8 +20,8 @@ impl Describe for Experiment {
         let exposure: Varied = |s| s.exposure;
         let by_glare = "by glare over signal, at the longest exposure";
         let by_exposure = "by exposure of a frame, glare as strong as the signal";
-        let mut tables = sweep(&self.by_glare, by_glare, glare, "");
-        tables.extend(sweep(&self.by_exposure, by_exposure, exposure, " s"));
+        let mut tables = self.sweep(&self.by_glare, by_glare, glare, "");
+        tables.extend(self.sweep(&self.by_exposure, by_exposure, exposure, " s"));
         tables.extend([self.limits(), self.file()]);
         let mut panels = plots(&self.by_glare, "glare over signal", glare);
         panels.extend(plots(&self.by_exposure, "exposure of a frame, s", exposure));
@@ -51,21 +51,27 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
         two(found.direct_over_signal),
         two(100.0 * (1.0 / found.direct_over_signal)),
     )];
-    said.extend(spreads().filter_map(|own| equal(own, found.own_modulation)));
+    said.extend(spreads().filter_map(|own| equal(found, own)));
     if let Some(bare) = found.by_glare.iter().find(|s| s.glare <= 0.0) {
         let published = &bare.readings[0];
         let lost = |m: Spread| m.mean < found.readable();
-        let end = if published.mtf_normalized.is_some_and(lost) {
+        let end = if published.in_all(found.seeds).is_none_or(lost) {
             ": glare is not the only cause of its failure."
         } else {
             "."
         };
         said.push(format!(
             "Without any glare the published analysis finds {}{end}",
-            modulation(published)
+            modulation(published, found.seeds)
         ));
     }
     said.extend(spreads().map(|own| reach(found, own)));
+    let settings = found.by_glare.iter().chain(&found.by_exposure);
+    let mut readings = settings.flat_map(|s| &s.readings);
+    if readings.any(|r| r.in_some(found.seeds).is_some()) {
+        let some = "Where an analysis has a modulation in some of the draws alone (the others give a constant picture or nothing) it does not read the picture; the tables say of how many its mean is.";
+        said.push(some.to_owned());
+    }
     if found.seeds > 1 {
         let more = if (found.traced as u64) < found.seeds {
             format!(", {} times in all", found.traced)
@@ -82,15 +88,15 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
 }
 
 /// The photographs with glare as strong as the signal: the published analysis and the one whose
-/// modulation is the closest to the `true_one`.
-fn equal(own: &[Setting], true_one: f64) -> Option<String> {
+/// modulation is the closest to the picture's own.
+fn equal(found: &Experiment, own: &[Setting]) -> Option<String> {
     let off = |s: &Setting| libm::log(s.glare).abs();
     let setting = own.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-    let off = |r: &Reading| Some((r.mtf_normalized?.mean - true_one).abs());
+    let off = |r: &Reading| Some((r.in_all(found.seeds)?.mean - found.own_modulation).abs());
     let readings = setting.readings.iter().filter_map(|r| Some((r, off(r)?)));
     let best = readings.min_by(|a, b| a.1.total_cmp(&b.1));
     let best = best.map_or(String::new(), |(r, _)| {
-        format!(", `{}` {}", r.analysis, modulation(r))
+        format!(", `{}` {}", r.analysis, modulation(r, found.seeds))
     });
     Some(format!(
         "With {} glare of {} times the signal ({} of exposure a frame, {} electrons of signal a pixel) the published analysis finds a normalized modulation of {}{best}.",
@@ -98,7 +104,7 @@ fn equal(own: &[Setting], true_one: f64) -> Option<String> {
         two(setting.glare),
         prefixed(setting.exposure, "s"),
         two(setting.electrons),
-        modulation(&setting.readings[0]),
+        modulation(&setting.readings[0], found.seeds),
     ))
 }
 
@@ -146,7 +152,8 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
     let exposure = match shortest {
         // Shorter ones were not studied.
         Some((t, exposure))
-            if t.exposure_between.is_none() && exposure <= found.shortest(spread) =>
+            if t.exposure_between.is_none()
+                && exposure <= found.exposures(spread).fold(f64::INFINITY, f64::min) =>
         {
             format!(
                 "the {what} is readable in single frames of {} already, the shortest studied, by {}.",
@@ -160,7 +167,10 @@ fn reach(found: &Experiment, own: &[Setting]) -> String {
             far(t.exposure_between, |x| prefixed(x, "s")),
             name(t)
         ),
-        None => "no exposure of single frames is long enough.".to_owned(),
+        None => format!(
+            "none of the exposures studied, single frames of up to {}, is long enough.",
+            prefixed(found.exposures(spread).fold(0.0, f64::max), "s")
+        ),
     };
     format!(
         "Under {spread} glare the {what} is readable (normalized modulation {} and more{share}){lists} \
@@ -181,14 +191,17 @@ fn far(between: Option<[f64; 2]>, number: impl Fn(f64) -> String) -> String {
     })
 }
 
-fn modulation(reading: &Reading) -> String {
+/// The normalized modulation, and in how many of the `seeds` it is defined where not in all.
+fn modulation(reading: &Reading, seeds: u64) -> String {
+    let of = reading.in_some(seeds);
+    let of = of.map_or(String::new(), |of| format!(" (in {of} draws)"));
     match reading.mtf_normalized {
         Some(Spread {
             mean,
             deviation: Some(deviation),
             ..
-        }) => format!("{} ± {}", two(mean), two(deviation)),
-        Some(m) => two(m.mean),
+        }) => format!("{} ± {}{of}", two(mean), two(deviation)),
+        Some(m) => two(m.mean) + &of,
         None => "nothing".to_owned(),
     }
 }
@@ -212,28 +225,6 @@ fn prefixed(x: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", two(scale * x))
 }
 
-/// A table for each spread of the glare: a line an analysis, a column a setting.
-fn sweep(settings: &[Setting], title: &str, x: Varied, unit: &str) -> Vec<Table> {
-    let of = |own: &[Setting]| {
-        let head = |s: &Setting| Column::number(&format!("{}{unit}", figure(x(s), 2)), "", "", 2);
-        let row = |i: usize| {
-            let mean = |s: &Setting| s.readings[i].mtf_normalized.map(|m| m.mean).into();
-            let name = own[0].readings[i].analysis.as_str().into();
-            std::iter::once(name).chain(own.iter().map(mean)).collect()
-        };
-        let heads = own.iter().map(head);
-        Table {
-            caption: format!("Normalized modulation {title}; {} glare", own[0].spread),
-            columns: std::iter::once(Column::text("analysis", ""))
-                .chain(heads)
-                .collect(),
-            rows: (0..own[0].readings.len()).map(row).collect(),
-            ..Table::default()
-        }
-    };
-    Setting::by_spread(settings).map(of).collect()
-}
-
 /// A plot for each spread of the glare, a line an analysis.
 fn plots(settings: &[Setting], title: &str, x: Varied) -> Vec<Plot> {
     let of = |own: &[Setting]| {
@@ -251,70 +242,11 @@ fn plots(settings: &[Setting], title: &str, x: Varied) -> Vec<Plot> {
 }
 
 impl Experiment {
-    /// The shortest exposure that was studied with this spread of the glare, s.
-    fn shortest(&self, spread: &str) -> f64 {
-        let own = self.by_exposure.iter().filter(|s| s.spread == spread);
-        own.map(|s| s.exposure).fold(f64::INFINITY, f64::min)
+    /// The exposures that were studied with this spread of the glare, s.
+    fn exposures(&self, spread: &str) -> impl Iterator<Item = f64> {
+        let own = self.by_exposure.iter().filter(move |s| s.spread == spread);
+        own.map(|s| s.exposure)
     }
-
-    fn limits(&self) -> Table {
-        Table {
-            caption: "Where each analysis reads the picture".to_owned(),
-            place: Place::Page,
-            ..Table::of(
-                &self.thresholds,
-                [
-                    Column::text("analysis", "").of(|t| (&t.analysis).into()),
-                    Column::text("glare", "").of(|t| (&t.spread).into()),
-                    Column::number("largest glare over signal", "", "", 2).of(|t| t.glare.into()),
-                    Column::number("shortest exposure", "", "s", 2).of(|t| t.exposure.into()),
-                ],
-            )
-        }
-    }
-
-    /// Every reading.
-    fn file(&self) -> Table {
-        let sweeps = [("glare", &self.by_glare), ("exposure", &self.by_exposure)];
-        let settings = sweeps
-            .into_iter()
-            .flat_map(|(name, all)| all.iter().map(move |s| (name, s)));
-        let readings = settings.flat_map(|(name, s)| s.readings.iter().map(move |r| (name, s, r)));
-        let column = |key| Column::text("", key);
-        Table {
-            file: Some("experiment.csv".to_owned()),
-            place: Place::File,
-            ..Table::of(
-                readings,
-                [
-                    column("sweep").of(|(sweep, ..)| Cell::name(sweep)),
-                    column("spread").of(|(_, s, _)| Cell::name(&s.spread)),
-                    column("glare").of(|(_, s, _)| s.glare.into()),
-                    column("fraction").of(|(_, s, _)| s.fraction.into()),
-                    column("exposure_s").of(|(_, s, _)| s.exposure.into()),
-                    column("electrons").of(|(_, s, _)| s.electrons.into()),
-                    column("saturated").of(|(_, s, _)| s.saturated.into()),
-                    column("noise").of(|(_, s, _)| s.noise.into()),
-                    column("analysis").of(|(.., r)| (&r.analysis).into()),
-                    column("mtf").of(|(.., r)| mean(r.mtf)),
-                    column("mtf_sd").of(|(.., r)| deviation(r.mtf)),
-                    column("mtf_normalized").of(|(.., r)| mean(r.mtf_normalized)),
-                    column("mtf_normalized_sd").of(|(.., r)| deviation(r.mtf_normalized)),
-                    column("correlation").of(|(.., r)| mean(r.correlation)),
-                    column("correlation_sd").of(|(.., r)| deviation(r.correlation)),
-                    column("failed").of(|(.., r)| r.failed.into()),
-                ],
-            )
-        }
-    }
-}
-
-fn mean(spread: Option<Spread>) -> Cell {
-    spread.map(|s| s.mean).into()
-}
-
-fn deviation(spread: Option<Spread>) -> Cell {
-    spread.and_then(|s| s.deviation).into()
 }
 
 #[cfg(test)]

@@ -109,8 +109,8 @@ pub struct Threshold {
     /// How the glare is spread.
     pub spread: String,
     /// Largest glare over signal up to which the mean normalized modulation stays at or above
-    /// [`Experiment::READABLE`] of the picture's own; none where the least glare of the study is
-    /// too much.
+    /// [`Experiment::READABLE`] of the picture's own, defined in every draw; none where the least
+    /// glare of the study is too much.
     pub glare: Option<f64>,
     /// The neighbouring settings between which it falls below that; none at the end of what was
     /// studied.
@@ -162,6 +162,20 @@ impl Experiment {
     /// Normalized modulation from which on the picture counts as read.
     pub(super) fn readable(&self) -> f64 {
         Self::READABLE * self.own_modulation
+    }
+}
+
+impl Reading {
+    /// The normalized modulation where each of `seeds` has one: that of a few of them tells nothing
+    /// of the others, whose pictures are constant.
+    pub(super) fn in_all(&self, seeds: u64) -> Option<Spread> {
+        self.mtf_normalized.filter(|m| m.draws as u64 == seeds)
+    }
+
+    /// In how many of `seeds` it is defined, if in some alone.
+    pub(super) fn in_some(&self, seeds: u64) -> Option<String> {
+        let some = self.mtf_normalized.filter(|m| m.draws as u64 != seeds)?;
+        Some(format!("{} of {seeds}", some.draws))
     }
 }
 

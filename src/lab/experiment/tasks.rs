@@ -226,7 +226,8 @@ impl Study for ExperimentTasks {
             by_exposure,
             words: Vec::new(),
         };
-        found.thresholds = thresholds(&found.by_glare, &found.by_exposure, found.readable());
+        let sweeps = [&found.by_glare[..], &found.by_exposure];
+        found.thresholds = thresholds(sweeps, found.own_modulation, plan.seeds);
         found.words = words(&found, &hidden.collect::<Vec<_>>().join(" and "));
         Ok(found)
     }

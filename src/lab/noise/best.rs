@@ -24,8 +24,8 @@ pub struct Best {
     pub within: Option<[Option<Held>; 2]>,
     /// Whether it falls there.
     pub reach: Option<Reach>,
-    /// Root mean square error at that level, over elements and draws; between two levels its square
-    /// is interpolated.
+    /// Root mean square error at that level, over elements and draws; between two levels its
+    /// logarithm is interpolated.
     pub rmse: Option<f64>,
     /// The same over the bound of Cramér and Rao.
     pub rmse_over_bound: Option<f64>,
@@ -43,9 +43,9 @@ pub(super) fn best(
     let found = own
         .filter_map(|c| {
             let held = c.held?;
-            let at = |of, means| between(axis, &c.points, held, of, means);
-            let rmse = at(|p| p.rmse_over_draws, Means::Squares);
-            let bound = at(|p| p.cramer_rao, Means::Logarithms);
+            let at = |of| between(axis, &c.points, held, of);
+            let rmse = at(|p| p.rmse_over_draws);
+            let bound = at(|p| p.cramer_rao);
             Some((c, held, rmse, rmse.and_then(|e| Some(e / bound?))))
         })
         // The first of equals stays.
@@ -71,23 +71,13 @@ pub(super) fn best(
     }
 }
 
-/// What is interpolated.
-#[derive(Clone, Copy)]
-enum Means {
-    /// Squares: right where between two levels ever more draws fail, as the mean modulation is
-    /// interpolated too.
-    Squares,
-    /// Logarithms: right for powers of the level.
-    Logarithms,
-}
-
-/// A positive quantity at a level between those studied.
+/// An error at a level between those studied: it goes with a power of the level where it is noise,
+/// and where ever more draws fail, as its square then goes with what is lost of the modulation.
 fn between(
     axis: &NoiseAxis,
     points: &[Point],
     held: Held,
     of: fn(&Point) -> Option<f64>,
-    means: Means,
 ) -> Option<f64> {
     if let Some(p) = points.iter().find(|p| p.level == held.level) {
         return of(p);
@@ -98,15 +88,9 @@ fn between(
     })?;
     let [a, b] = [of(&pair[0])?, of(&pair[1])?];
     let t = axis.fraction([pair[0].level, pair[1].level], held.level);
-    let value = match means {
-        // Over the larger, whose square may overflow.
-        Means::Squares => {
-            let most = a.max(b);
-            let square = |x: f64| (x / most) * (x / most);
-            most * ((1.0 - t) * square(a) + t * square(b)).sqrt()
-        }
-        Means::Logarithms => libm::exp((1.0 - t) * libm::log(a) + t * libm::log(b)),
-    };
+    // Where no draw errs its square, as what is lost, counts as a hundredth.
+    let a = if a > 0.0 { a } else { 0.1 * b };
+    let value = libm::exp((1.0 - t) * libm::log(a) + t * libm::log(b));
     value.is_finite().then_some(value)
 }
 
@@ -133,15 +117,15 @@ mod tests {
         }
     }
 
-    /// By hand: 1e-3 is half way from 1e-4 to 1e-2; the error there √((0.01² + 0.07²)/2) = 0.05,
-    /// the bound, ten times the level, 0.01.
+    /// By hand: 1e-3 is half way from 1e-4 to 1e-2; the error there √(0.01 · 0.09) = 0.03, the
+    /// bound, ten times the level, 0.01. From none on, which counts as 0.009, it is √0.00081.
     #[test]
     fn the_furthest_wins_and_of_equals_the_nearest() {
         let curves = [
             curve("never", None, [1.0, 1.0]),
             curve("early", Some((1e-4, Reach::Falls)), [0.001, 0.001]),
             curve("coarse", Some((1e-3, Reach::Falls)), [0.04, 0.09]),
-            curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.07]),
+            curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.09]),
         ];
         let found = best(&NoiseAxis::Relative, (Picture::Board(2), 8), &curves);
         assert_eq!(found.method.as_deref(), Some("fine"));
@@ -149,8 +133,11 @@ mod tests {
             (found.level, found.reach),
             (Some(1e-3), Some(Reach::AtLeast))
         );
-        assert!((found.rmse.unwrap() / 0.05 - 1.0).abs() < 1e-12);
-        assert!((found.rmse_over_bound.unwrap() / 5.0 - 1.0).abs() < 1e-12);
+        assert!((found.rmse.unwrap() / 0.03 - 1.0).abs() < 1e-12);
+        assert!((found.rmse_over_bound.unwrap() / 3.0 - 1.0).abs() < 1e-12);
+        let exact = [curve("exact", Some((1e-3, Reach::Falls)), [0.0, 0.09])];
+        let found = best(&NoiseAxis::Relative, (Picture::Board(2), 8), &exact);
+        assert!((found.rmse.unwrap() / 0.00081f64.sqrt() - 1.0).abs() < 1e-12);
         // Where few photons are loud the one that does with least wins.
         assert_eq!(
             best(&NoiseAxis::Photons, (Picture::Board(2), 8), &curves)

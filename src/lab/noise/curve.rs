@@ -9,6 +9,7 @@ use super::plan::NoisePlan;
 use super::trial::Trial;
 use crate::lab::Measures;
 use crate::lab::ensemble::{Draws, MOST_SPREAD, Spread};
+use crate::lab::loss;
 use crate::num::statistics::student_threshold;
 use crate::recovery::Method;
 
@@ -86,8 +87,8 @@ const SURELY: f64 = 1.96;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Lost {
-    /// At this level, by interpolation (in its logarithm, of bits in their number) between the last
-    /// level at or above the limit and the next. Where large levels are the quiet ones it is the
+    /// At this level, by interpolation of the logarithm of what is lost (over that of the level, or
+    /// the number of bits) between the last level at or above the limit and the next. Where large levels are the quiet ones it is the
     /// smallest from which on the mean stays at or above the limit.
     At(f64),
     /// Between these two levels, the quieter first, which are too far apart to interpolate: more
@@ -98,8 +99,9 @@ pub enum Lost {
     /// It is not below the limit at any level.
     Never,
     /// Before the limit was reached the method failed in some draw, or the mean is not known to a
-    /// tenth, or (raw MTF) the denominator W + B spreads by more than a tenth, so that there is no
-    /// mean to speak of.
+    /// tenth (none of a single draw is), or is more than a tenth above that of the picture, or (raw
+    /// MTF) the denominator W + B spreads by more than a tenth, so that there is no mean to speak
+    /// of.
     Unknown,
 }
 
@@ -174,10 +176,12 @@ impl NoiseCurve {
         let truth = Measures::of(truth, truth);
         let own = |mtf: Option<f64>| mtf.filter(|m| *m > 0.0).unwrap_or(1.0);
         let full = [truth.mtf_raw, truth.mtf_normalized].map(own);
-        // A mean is known where every draw has the measure and its standard error is small.
+        // A mean is known where every draw has the measure and its standard error is small. One as
+        // far above 1 as a limit is below is none to speak of: negative values make it.
+        let most = 2.0 - LIMITS[0];
         let known = |p: &Point, s: Option<Spread>, full: f64| {
-            let s = s.filter(|s| s.draws == p.draws && s.stderr.is_none_or(|e| e <= MOST_STDERR));
-            (p.level, s.map(|s| s.mean / full))
+            let s = s.filter(|s| s.draws == p.draws && s.stderr.is_some_and(|e| e <= MOST_STDERR));
+            (p.level, s.map(|s| s.mean / full).filter(|m| *m <= most))
         };
         let narrow = |p: &Point| p.denominator_spread.is_none_or(|s| s <= MOST_SPREAD);
         let raw = points
@@ -188,12 +192,11 @@ impl NoiseCurve {
             .iter()
             .map(|p| known(p, p.mtf_normalized, full[1]))
             .collect();
-        let most = 2.0 - LIMITS[0];
         // Whether a mean is to be trusted is not shifted.
         let shifted = |sign: f64| -> Option<Vec<(f64, Option<f64>)>> {
             let each = points.iter().zip(&raw).map(|(p, (level, mean))| {
-                let Some(mean) = mean.filter(|mean| *mean <= most) else {
-                    return Some((*level, *mean));
+                let Some(mean) = mean else {
+                    return Some((*level, None));
                 };
                 let spread = p.mtf_raw?;
                 let times = student_threshold(SURELY, spread.draws as f64 - 1.0);
@@ -233,7 +236,7 @@ fn lost(curve: &[(f64, Option<f64>)], limit: f64, axis: &NoiseAxis) -> Lost {
                 None => Lost::Before,
                 Some((quiet, _)) if axis.is_far([quiet, level]) => Lost::Between([quiet, level]),
                 Some((quiet, high)) => {
-                    Lost::At(axis.at([quiet, level], (high - limit) / (high - mean)))
+                    Lost::At(axis.at([quiet, level], loss::way_to([high, mean], limit)))
                 }
             };
         }
@@ -247,15 +250,9 @@ fn lost(curve: &[(f64, Option<f64>)], limit: f64, axis: &NoiseAxis) -> Lost {
 }
 
 /// Up to which level the mean of such a curve stays at or above `limit`; `None` if it is not there
-/// at the quietest. A mean as far above 1 as `limit` is below is none to speak of: it is that of a
-/// recovery with negative values.
+/// at the quietest.
 fn held(curve: &[(f64, Option<f64>)], limit: f64, axis: &NoiseAxis) -> Option<Held> {
-    let trusted = |mean: &f64| *mean <= 2.0 - limit;
-    let curve: Vec<(f64, Option<f64>)> = curve
-        .iter()
-        .map(|(level, mean)| (*level, mean.filter(trusted)))
-        .collect();
-    if let Lost::At(level) = lost(&curve, limit, axis) {
+    if let Lost::At(level) = lost(curve, limit, axis) {
         let reach = Reach::Falls;
         return Some(Held { level, reach });
     }

@@ -132,8 +132,24 @@ impl NoiseStudy {
                     "{object}: it has no contrast, and so no MTF: see its root mean square error"
                 )
             }
+            _ if self.is_unknown((b.picture, b.elements)) => {
+                let why = match self.seeds {
+                    1 => ", as one draw tells no mean",
+                    _ => "",
+                };
+                format!("{object}: no method is known to reach it{why}{published}")
+            }
             _ => format!("{object}: no method reaches it{published}"),
         }
+    }
+
+    /// Whether of some method nothing is known on an object.
+    fn is_unknown(&self, object: (Picture, usize)) -> bool {
+        let mut own = self
+            .curves
+            .iter()
+            .filter(|c| (c.picture, c.elements) == object);
+        own.any(|c| c.lost_raw[0] == Lost::Unknown)
     }
 
     /// How far the scatter of the draws may move the level of the best method.

@@ -52,10 +52,11 @@ impl Tolerance {
             );
         };
         format!(
-            "With the right geometry and a noise of {} of each entry, joint recovers {} at an MTF raw of {}; {found}.",
+            "With the right geometry and a noise of {} of each entry, joint recovers {} at an MTF raw of {} (mean of {} draws of the noise, as all here); {found}.",
             figure(self.noise, 2),
             self.scene,
-            figure(mtf, 3)
+            figure(mtf, 3),
+            self.draws
         )
     }
 
@@ -229,6 +230,7 @@ mod tests {
             scene: "bench".to_owned(),
             scene_hash: String::new(),
             noise: 0.01,
+            draws: 4,
             wished: 0.9,
             own: Some(1.0),
             mtf: Some(0.99),
@@ -241,6 +243,10 @@ mod tests {
             ],
         };
         let said = found.describe();
+        assert!(
+            said.sentence
+                .contains("0.990 (mean of 4 draws of the noise")
+        );
         let first = "3 of 5 errors of geometry can halve it, first hinge angle off by 0.70 deg and view, y off by 0.20 in.";
         assert!(said.sentence.ends_with(first), "{}", said.sentence);
         let lost: Vec<_> = said.tables[0].rows.iter().map(|r| r[6].clone()).collect();

@@ -41,8 +41,9 @@ pub struct Sensitivity {
     /// ‖∂Φ‖/‖Φ‖ a unit by the model's derivative, and what the best scale leaves of it; absent of
     /// what has none.
     pub by_derivative: Option<[f64; 2]>,
-    /// The largest size with which the MTF stays at what is wished for, interpolated; absent where
-    /// every size that was tried allows it, or none.
+    /// The largest size with which the MTF stays at what is wished for, what is lost of it being
+    /// interpolated as a power of the size; absent where every size that was tried allows it, or
+    /// none.
     pub needed: Option<f64>,
     /// The size at which the MTF falls to half of that without error; absent if it does not, or was
     /// lost before.
@@ -58,6 +59,8 @@ pub struct Tolerance {
     pub scene_hash: String,
     /// Noise of the photographs, relative to each entry.
     pub noise: f64,
+    /// Draws of it, over which each MTF is the mean.
+    pub draws: u64,
     /// MTF that is wished for, of the picture's own.
     pub wished: f64,
     /// Raw MTF of the picture itself; absent where it has no contrast.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::results::{Misplacement, Sensitivity, Tolerance};
 use crate::lab::error::LabError;
+use crate::lab::loss::size_at;
 use crate::lab::misplaced::{ALL, Misplaced, Size, normal};
 use crate::lab::options::Opt;
 use crate::lab::registered::{Registered, prepared};
@@ -198,6 +199,7 @@ impl Study for ToleranceTasks {
             scene: self.scene.name.clone(),
             scene_hash: self.scene.hash.clone(),
             noise: self.noise,
+            draws: DRAWS,
             wished: self.wished,
             own: mtf_raw(&picture, &picture),
             mtf: right,
@@ -263,22 +265,19 @@ fn by_derivative(scene: &Scene, what: &Misplaced) -> Option<[f64; 2]> {
     Some([(change / square).sqrt(), (left / square).sqrt()])
 }
 
-/// Where the MTF first falls through `limit`, interpolated in log size; none where it is below that
-/// with the right geometry.
+/// Where the MTF first falls through `limit`; none where it is below that with the right geometry.
+/// What counts as lost is what the error takes of the MTF with the `right` one.
 fn falls_through(right: f64, rows: &[Misplacement], limit: f64) -> Option<f64> {
     if right <= limit {
         return None;
     }
-    let mut before = (rows.first()?.size * 0.1, right);
+    let mut before = [0.0, 1.0];
     for row in rows {
-        let mtf = row.mtf?;
-        if mtf < limit {
-            let t = (before.1 - limit) / (before.1 - mtf);
-            return Some(libm::exp(
-                libm::log(before.0) + t * libm::log(row.size / before.0),
-            ));
+        let here = [row.size, row.mtf? / right];
+        if here[1] < limit / right {
+            return Some(size_at([before, here], limit / right));
         }
-        before = (row.size, mtf);
+        before = here;
     }
     None
 }

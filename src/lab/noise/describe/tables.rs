@@ -36,7 +36,7 @@ impl NoiseStudy {
         );
         Table::new(caption, columns, self.curves.iter().map(row)).noted(format!(
             "{} lost: below at the quietest level already; kept: at no level below; unknown: before that some \
-             draw gave nothing, or no mean is known. `a to b`: between these two levels, more than a decade \
+             draw gave nothing, or no mean is known (of one draw, or above 1.1). `a to b`: between these two levels, more than a decade \
              (3 bits) apart; study more levels between them (--noise).",
             label.procedure
         ))

@@ -41,18 +41,27 @@ fn small_misplacements_act_in_proportion() {
     }
 }
 
+/// An error that takes 2 times its size of an MTF that noise has left at 0.8 takes half of that at
+/// a size of 0.25, and a tenth at 0.05; the smallest size that loses a limit is counted from none.
 #[test]
-fn the_limit_is_interpolated_in_log_size() {
-    let row = |size, mtf| Misplacement {
+fn a_loss_in_proportion_is_met_whatever_sizes_are_tried() {
+    let row = |size| Misplacement {
         size,
         change: 0.0,
         after_scale: 0.0,
-        mtf: Some(mtf),
+        mtf: Some(0.8 * (1.0 - 2.0 * size)),
     };
-    let rows = [row(0.01, 1.0), row(0.1, 0.75), row(1.0, 0.25)];
-    assert!((falls_through(1.0, &rows, 0.5).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
-    assert_eq!(falls_through(1.0, &rows[..2], 0.5), None);
-    assert_eq!(falls_through(0.3, &rows, 0.5), None);
+    let rows = [0.03, 0.1, 0.4].map(row);
+    for (rows, limit, at) in [
+        (&rows[..], 0.4, 0.25),
+        (&rows[..], 0.72, 0.05),
+        (&rows[1..], 0.72, 0.05),
+    ] {
+        let found = falls_through(0.8, rows, limit).unwrap();
+        assert!((found / at - 1.0).abs() < 1e-12, "{limit} {found}");
+    }
+    assert_eq!(falls_through(0.8, &rows[..2], 0.4), None);
+    assert_eq!(falls_through(0.3, &rows, 0.4), None);
 }
 
 /// With hardly any noise the right geometry recovers the board: by its elements' centres, too
