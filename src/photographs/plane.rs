@@ -53,7 +53,7 @@ pub fn linearised(
         Chosen::One(channel) if samples.channels.len() == 1 => {
             return Err(refused(
                 format!("{name} is grey, and has no channel {channel:?}"),
-                "leave `channel` out",
+                "leave `channel` out, or give photographs in colour alone",
             ));
         }
         Chosen::One(channel) => vec![channel],

@@ -300,11 +300,11 @@ fn a_method_without_bands_is_kept_beside_one_that_has_them() {
 #[test]
 fn what_gave_nothing_though_it_was_asked_for_is_told() {
     let workspace = with_run();
-    let line = "-q recover done --method left-inverse,joint --elements 6x6 --noise 0.2";
+    let line = "-q recover done --method left-inverse,joint --elements 2x2 --noise 0.2";
     let ended = workspace.phicam(line).exits(0);
     let words = "warning: left-inverse: left-inverse does not exist";
     assert!(ended.stderr.contains(words), "{}", ended.account());
-    let usual = "-q recover done --elements 6x6 --noise 0.2";
+    let usual = "-q recover done --elements 2x2 --noise 0.2";
     let ended = workspace.phicam(usual).exits(0);
     assert_eq!(ended.stderr, "", "{}", ended.account());
     let line = "-q recover done --method joint-unbounded,joint --elements 2x2 --noise 0.2 --free-scale --bands 0.9 --json";

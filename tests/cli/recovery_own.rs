@@ -221,7 +221,7 @@ fn a_mask_may_hold_truths_or_integers() {
     let workspace = with_model();
     let model = workspace.matrix("done/model/phi.npy");
     let (pixels, spots) = model.shape();
-    let is_left_out = |p: usize, l: usize| (5 * p + 3 * l) % 11 == 0;
+    let is_left_out = |p: usize, l: usize| (5 * p + 3 * l).is_multiple_of(11);
     let spoilt = Matrix::from_fn(pixels, spots, |p, l| {
         model[(p, l)] * if is_left_out(p, l) { 1000.0 } else { 1.0 }
     });
