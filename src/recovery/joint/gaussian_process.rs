@@ -47,8 +47,8 @@ const LN_SPREAD: [f64; 2] = [-2.13, 0.98];
 const STEP: f64 = 0.35;
 const STEPS: [i32; 2] = [-9, 9];
 /// Shares η of the variance that neighbours do not share, with how often pictures are such. By the
-/// likelihood of whole pictures nineteen in twenty of 136 crops of 17 photographs have none, four in
-/// five of 40 pictures of dead leaves; photographs of them hardly tell.
+/// likelihood of whole pictures nineteen in twenty of 136 crops of 17 photographs have none, four
+/// in five of 40 pictures of dead leaves; photographs of them hardly tell.
 const INDEPENDENT: [(f64, f64); 3] = [(0.0, 0.8), (0.1, 0.1), (0.3, 0.1)];
 /// Share of surfaces of one reflectance throughout.
 const FLAT: f64 = 0.02;
