@@ -13,8 +13,8 @@
 //! photographs do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov
 //! θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
 //! where the photographs ask for it, and so is what the next rule of integration would
-//! ([`rule`]). All parameters together are held against what was known of them ([`beforehand`]), and
-//! what is left over against light that the model leaves out ([`light_left_out`]).
+//! ([`rule`]). All parameters together are held against what was known of them ([`beforehand`]),
+//! and what is left over against light that the model leaves out ([`light_left_out`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60

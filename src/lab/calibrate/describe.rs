@@ -34,8 +34,8 @@ fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 }
 
 impl Calibration {
-    /// Whether the search ended, the photographs do not refute what it found, and a surface can have
-    /// its picture.
+    /// Whether the search ended, the photographs do not refute what it found, and a surface can
+    /// have its picture.
     pub fn is_found(&self) -> bool {
         self.is_settled && !self.is_refuted() && self.impossible().is_none()
     }

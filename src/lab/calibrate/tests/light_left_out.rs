@@ -23,8 +23,8 @@ fn calibrated(seed: u64, beside: impl Fn(usize, f64) -> f64) -> Calibration {
 }
 
 /// Without any, P is as even as chance leaves it: of 40 draws and two kinds below 0.1 as many as a
-/// binomial count has but for twice in a thousand. 1 % of even light, which χ² of all entries hardly
-/// sees, is told, and so is light that falls off by a tenth; neither where
+/// binomial count has but for twice in a thousand. 1 % of even light, which χ² of all entries
+/// hardly sees, is told, and so is light that falls off by a tenth; neither where
 /// it is estimated.
 #[test]
 fn light_that_is_left_out_is_told() {
