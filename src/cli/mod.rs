@@ -33,8 +33,8 @@
 //! | `merged.json` | of which plan it is, where it was put together from shards |
 //!
 //! A study keeps its finished tasks in `NAME.phs` beside its files until it is complete, and `study
-//! noise` for good: the same command goes on from them. `study.json` tells of which study, scene and
-//! settings its files are; what differs from it needs `--replace`.
+//! noise` for good: the same command goes on from them. `study.json` tells of which study, scene
+//! and settings its files are; what differs from it needs `--replace`.
 //!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree (`validate`, `run`) or
 //! photographs and model contradict each other (`recover`: no reflectances between 0 and 1 explain

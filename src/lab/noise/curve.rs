@@ -88,8 +88,9 @@ const SURELY: f64 = 1.96;
 #[serde(rename_all = "snake_case")]
 pub enum Lost {
     /// At this level, by interpolation of the logarithm of what is lost (over that of the level, or
-    /// the number of bits) between the last level at or above the limit and the next. Where large levels are the quiet ones it is the
-    /// smallest from which on the mean stays at or above the limit.
+    /// the number of bits) between the last level at or above the limit and the next. Where large
+    /// levels are the quiet ones it is the smallest from which on the mean stays at or above the
+    /// limit.
     At(f64),
     /// Between these two levels, the quieter first, which are too far apart to interpolate: more
     /// than a decade, of bits more than 3.

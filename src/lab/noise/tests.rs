@@ -275,8 +275,8 @@ fn a_mean_that_strays_has_not_fallen() {
     let curve = |loud| of(1.0, loud, &[0.0, 1.0]);
     assert_eq!(curve([9.0, -9.0, 5.0, -4.2]).lost_raw, [Lost::Unknown; 2]);
     let fallen = curve([0.25, 0.15, 0.2, 0.2]);
-    // A picture of albedo 0.25 and 0.75 has a raw MTF of ½: relative to that a loss of 0.01 grows to
-    // 0.81, and is 0.1 at ln 10/ln 81 of the way.
+    // A picture of albedo 0.25 and 0.75 has a raw MTF of ½: relative to that a loss of 0.01 grows
+    // to 0.81, and is 0.1 at ln 10/ln 81 of the way.
     let grey = of(0.495, [0.1, 0.09, 0.095, 0.095], &[0.25, 0.75]);
     assert_eq!(grey.mtf_of_truth, [0.5, 1.0]);
     let Lost::At(level) = grey.lost_raw[0] else {

@@ -33,8 +33,8 @@ fn alike(seeds: u64, [raw, normalized]: [f64; 2]) -> NoiseCurve {
     NoiseCurve::of(&plan, object, Method::Pinv, found, &[0.0, 1.0])
 }
 
-/// One draw tells no mean, and a mean that is more than a tenth above that of the picture is that of
-/// negative values: neither keeps a modulation, though none is below a limit.
+/// One draw tells no mean, and a mean that is more than a tenth above that of the picture is that
+/// of negative values: neither keeps a modulation, though none is below a limit.
 #[test]
 fn one_draw_and_a_mean_above_the_pictures_own_keep_nothing() {
     let kept = alike(2, [1.05, 0.95]);
