@@ -2462,7 +2462,7 @@ BREAKS = [
         "tr_product(&towards, &towards) * 0.0;",
         "lib",
         "lab::calibrate::tests::light_left_out::light_that_is_left_out_is_told",
-        26,
+        28,
     ),
     Break(
         "A picture that no surface can have is not found",

@@ -41,6 +41,9 @@ fn light_that_is_left_out_is_told() {
     // Binomial, 80 at 0.1: 17 or more, and 1 or fewer, in 2 of 1000.
     assert!((2..17).contains(&few), "{few} {all:?}");
     assert!(all.iter().filter(|p| **p < 1e-3).count() < 2, "{all:?}");
+    // Of 80 even ones the mean is ½ ± 0.032.
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    assert!((mean - 0.5).abs() < 0.13, "{mean} {all:?}");
     let even = |_, _| 0.01;
     let falls_off = |p: usize, own: f64| {
         let over = |k: usize| (2 * k + 1) as f64 / 8.0 - 1.0;
