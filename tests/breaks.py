@@ -2474,15 +2474,6 @@ BREAKS = [
         26,
     ),
     Break(
-        "`joint-gp` weighs shares of variance by how often pictures have them",
-        "src/recovery/joint/gaussian_process.rs",
-        "+ libm::log(often);",
-        "+ 0.0 * libm::log(often);",
-        "lib",
-        "recovery::joint::gaussian_process::tests::two_elements_by_hand",
-        26,
-    ),
-    Break(
         "`--also-read` refuses a folder that is not there",
         "src/cli/args/value.rs",
         "let there = path.is_dir();",

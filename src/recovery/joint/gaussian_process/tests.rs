@@ -100,9 +100,9 @@ fn two_elements_by_hand() {
             let normal = |z: f64| libm::exp(-0.5 * (z / 0.98).powi(2));
             let steps: Vec<f64> = (-90..=90).map(|step| 0.035 * f64::from(step)).collect();
             let sum: f64 = steps.iter().map(|z| normal(*z)).sum();
-            for (own, often) in [(0.0, 0.8), (0.1, 0.1), (0.3, 0.1)] {
+            for own in [0.0, 0.1, 0.3] {
                 for z in &steps {
-                    let prior = 0.98 * often * normal(*z) / (sum * 7.0);
+                    let prior = 0.98 * normal(*z) / (sum * 21.0);
                     all.push(of(length, libm::exp(z - 2.13), own, prior));
                 }
             }
@@ -178,14 +178,9 @@ fn pictures_of_the_prior_are_covered_as_promised() {
         let mut uneven = Vec::new();
         for seed in 0..300u64 {
             let tau = libm::exp(-2.13 + 0.98 * normal());
-            // Ten lengths of the lattice, one after the other; of ten pictures eight without an
-            // independent share.
+            // Twelve lengths of the lattice, one after the other.
             let length = 0.4 * libm::exp(0.5 * (seed % 10) as f64);
-            let own = match seed / 10 % 10 {
-                0 => 0.1,
-                1 => 0.3,
-                _ => 0.0,
-            };
+            let own = [0.0, 0.1, 0.3][(seed / 10 % 3) as usize];
             let truth = drawn(&mut normal, tau, length, own);
             let exact = bench.phi(&truth);
             let stderr = bench.phi(&DVector::from_element(25, 0.5)) * noise;
