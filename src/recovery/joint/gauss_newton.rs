@@ -90,6 +90,7 @@ pub(in crate::recovery) fn recover(
         noise: noise(&start),
         directions: 0.0,
     };
+    let scale_error = problem.nuisance.scale_error.unwrap_or(0.0);
     let settle = |method: Method, at: &mut Estimates| -> Result<(usize, bool), RecoveryError> {
         let (mut steps, mut settled) = (0, false);
         while steps < MOST_STEPS && !settled {
@@ -99,6 +100,10 @@ pub(in crate::recovery) fn recover(
             let noise = noise(&found);
             if method == Method::JointGp {
                 at.directions = found.effective_rank;
+                // On the way already: where there is no solution picture and ν fall to nothing.
+                if at.directions * scale_error * scale_error > MOST_AVERAGED {
+                    return Err(TOO_ROUGHLY);
+                }
             }
             settled = (noise / at.noise - 1.0).abs() < SETTLED;
             // Where whole steps go back and forth, half of them do not.
@@ -115,10 +120,6 @@ pub(in crate::recovery) fn recover(
     };
     let (steps, mut settled) = settle(method, &mut at)?;
     let steps = before + steps;
-    let scale_error = problem.nuisance.scale_error.unwrap_or(0.0);
-    if at.directions * scale_error * scale_error > MOST_AVERAGED {
-        return Err(TOO_ROUGHLY);
-    }
     let linear = Linear::about(problem, &at);
     let shared = Shared::default();
     let about = linear.problem(&base).sharing(&shared);
