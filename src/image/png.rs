@@ -4,6 +4,9 @@ use std::io::Cursor;
 
 use super::{Channel, DEFLATE_RATIO_MAX, Encoding, Image, ImageError, checked_size, damaged};
 
+/// A γ that differs from 1 by no more is linear.
+const LINEAR: f64 = 1e-3;
+
 /// The encoder's own report.
 #[derive(Debug, thiserror::Error)]
 #[error("the picture could not be encoded as PNG: {0}")]
@@ -55,6 +58,17 @@ pub(super) fn png_size(bytes: &[u8]) -> Option<[usize; 2]> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     let header = decoder.read_header_info().ok()?;
     Some([header.width, header.height].map(|n| n as usize))
+}
+
+/// γ of light = (value/full scale)^γ by its sRGB or gAMA chunk; none of other files, of PNGs that say
+/// nothing of it and of those that say that they are linear.
+pub(super) fn png_gamma(bytes: &[u8]) -> Option<f64> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let reader = decoder.read_info().ok()?;
+    let gamma = 1.0 / f64::from(reader.info().gamma()?.into_value());
+    (gamma.is_finite() && (gamma - 1.0).abs() > LINEAR).then_some(gamma)
 }
 
 /// A PNG of any colour type and depth; palettes become colours, a transparent colour becomes alpha.

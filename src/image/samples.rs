@@ -24,6 +24,8 @@ pub struct Samples {
     pub full_scale: Option<f64>,
     /// Whether the file's compression changes samples (JPEG).
     pub is_lossy: bool,
+    /// γ ≠ 1 where the file says that light is (value/full scale)^γ: sRGB or gAMA of a PNG.
+    pub gamma: Option<f64>,
 }
 
 impl Samples {

@@ -2,6 +2,7 @@
 
 use super::exr::{envelope, is_whole};
 use super::orientation::Orientation;
+use super::png::png_gamma;
 use super::samples::{MOST_SAMPLED, MOST_SAMPLES, Samples, TOO_MANY, unknown_turn, upright};
 use super::tiff::read_tiff;
 use super::{Encoding, ImageError, damaged, decode_within, unsupported};
@@ -59,6 +60,7 @@ fn of_image(name: &str, bytes: &[u8]) -> Result<Samples, ImageError> {
         values,
         full_scale,
         is_lossy: matches!(bytes, [0xff, 0xd8, ..]),
+        gamma: png_gamma(bytes),
     };
     let opaque = match image.encoding {
         Encoding::Integer => full_scale.unwrap_or(1.0),

@@ -91,6 +91,7 @@ pub(super) fn read_tiff(name: &str, bytes: &[u8]) -> Result<Vec<Samples>, ImageE
             channels,
             full_scale,
             is_lossy: false,
+            gamma: None,
         };
         frames.push(upright(frame, turn));
         if !decoder.more_images() {

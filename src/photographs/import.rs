@@ -143,6 +143,12 @@ pub fn import(
     if reader.is_lossy && set.gamma.is_none() && set.response.is_none() {
         warnings.push("JPEG is neither linear nor without loss: give `gamma` or `response`, or photographs that the camera saves as they are".to_owned());
     }
+    if let Some((file, gamma)) = &reader.encoded
+        && set.gamma.is_none()
+        && set.response.is_none()
+    {
+        warnings.push(format!("{file} says that its values are those of light to the power 1/{gamma:.2} (its sRGB or gAMA chunk), and they are taken for linear: give `gamma` or `response`; `gamma = 1` where they are the camera's own"));
+    }
     if columns.zeros > 0.0 {
         let all = columns.photographs * shots.size[0] * shots.size[1];
         warnings.push(format!(

@@ -269,6 +269,7 @@ mod tests {
             values: values.to_vec(),
             full_scale: Some(255.0),
             is_lossy: false,
+            gamma: None,
         }
     }
 

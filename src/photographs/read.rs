@@ -34,6 +34,8 @@ pub(super) struct Reader<'a> {
     sources: BTreeMap<PathBuf, SourceFile>,
     /// Whether one was compressed with loss.
     pub is_lossy: bool,
+    /// The first that says that its values are not linear in the light, and its γ.
+    pub encoded: Option<(String, f64)>,
 }
 
 impl<'a> Reader<'a> {
@@ -45,6 +47,7 @@ impl<'a> Reader<'a> {
             axes,
             sources: BTreeMap::new(),
             is_lossy: false,
+            encoded: None,
         }
     }
 
@@ -99,6 +102,8 @@ impl<'a> Reader<'a> {
             })?,
         };
         self.is_lossy |= found.iter().any(|s| s.is_lossy);
+        let gamma = found.iter().find_map(|s| s.gamma);
+        self.encoded = (self.encoded.take()).or_else(|| Some((name, gamma?)));
         Ok(found)
     }
 
@@ -188,6 +193,7 @@ fn of_array(
         },
         full_scale,
         is_lossy: false,
+        gamma: None,
     };
     Ok((0..frames).map(frame).collect())
 }

@@ -80,6 +80,24 @@ fn photographs_become_a_run_that_is_recovered() {
     assert!([0, 1].contains(&w.phicam(of_scene).code));
 }
 
+/// A PNG that says that its values are encoded is taken as it was, and that is told unless the user
+/// says how they are.
+#[test]
+fn encoded_values_are_told() {
+    let w = with_photographs();
+    let plain = photograph(3, [6, 4]);
+    let srgb = b"\0\0\0\x01sRGB\0\xae\xce\x1c\xe9";
+    let encoded = [&plain[..33], srgb, &plain[33..]].concat();
+    w.write("in/input_3.png", encoded);
+    let told = w.phicam(PLAIN).exits(0);
+    for words in ["in/input_3.png", "1/2.20", "`gamma = 1`"] {
+        assert!(told.stderr.contains(words), "{}", told.account());
+    }
+    assert!((w.matrix("out/phi.npy") - sums()).amax() < 1e-9);
+    let told = w.phicam(&format!("{PLAIN} --gamma 1 --replace")).exits(0);
+    assert!(!told.stderr.contains("1/2.20"), "{}", told.account());
+}
+
 #[test]
 fn an_import_is_replaced_only_by_another_that_is_meant_to() {
     let w = with_photographs();

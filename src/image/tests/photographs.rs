@@ -177,6 +177,20 @@ fn integers_stay_integers_and_what_is_no_light_is_refused() {
     assert_eq!(only(&bytes::GREY_ALPHA).values, [9.0, 17.0]);
 }
 
+/// Chunks as the PNG specification writes them: gAMA of 1/2.2 and of 1, sRGB.
+#[test]
+fn an_encoding_that_a_png_states_is_told() {
+    let plain = grey16_png([2, 1], &[7, 9]).unwrap();
+    let with = |chunk: &[u8]| only(&[&plain[..33], chunk, &plain[33..]].concat());
+    let encoded = with(b"\0\0\0\x04gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05");
+    assert!((encoded.gamma.unwrap() - 2.2).abs() < 1e-4, "{encoded:?}");
+    assert_eq!(encoded.values, [7.0, 9.0]);
+    let srgb = with(b"\0\0\0\x01sRGB\0\xae\xce\x1c\xe9");
+    assert!((srgb.gamma.unwrap() - 2.2).abs() < 1e-4, "{srgb:?}");
+    let linear = with(b"\0\0\0\x04gAMA\0\x01\x86\xa0\x31\xe8\x96\x5f");
+    assert_eq!([linear.gamma, only(&plain).gamma], [None; 2]);
+}
+
 /// A header that promises 2³¹ pixels is refused before memory is taken, and no prefix panics.
 #[test]
 fn cut_and_forged_files_are_refused() {

@@ -12,10 +12,10 @@
 //! is H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with
 //! ε unknown. The estimates are then set to what was found and all is done again, until the factors
 //! no longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
-//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary; of
-//! `joint-gp`, which knows of what size x is, ε̂ is the likeliest whatever x ([`Linear`]): fitted
-//! together, the picture would be the least and the factor the largest. Its errors are then
-//! somewhat too large where N σ_s² is no longer small: 1.3 times for 36 elements and 7 %.
+//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary. Of
+//! `joint-gp`, which knows of what size x is, the factors of the frames are the likeliest whatever x
+//! ([`Linear`]): fitted together, the picture would be the least and the factors the largest. Over
+//! ε it integrates itself ([`super::gaussian_process`]): x is the light (1 + ε) ρ here.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.
@@ -40,14 +40,6 @@ const MOST_STEPS: usize = 40;
 const WHOLE_STEPS: usize = 8;
 /// The factors have settled where none changes by more than this fraction of its σ.
 const SETTLED: f64 = 1e-4;
-/// ν σ_s² of `joint-gp` at most: ε (1 + ε) = −ν σ_s², where p(ε) (1 + ε)^(−ν) is likeliest, has no
-/// solution beyond.
-const MOST_AVERAGED: f64 = 0.25;
-const TOO_ROUGHLY: RecoveryError = RecoveryError::NotForMethod {
-    method: Method::JointGp,
-    what: "cannot average over a scale that is known so roughly, of photographs that tell so much",
-    cure: "leave it free (--free-scale), or know it better",
-};
 
 /// Recovers by `by`, a method on a problem that is linear in the factors.
 pub(in crate::recovery) fn recover(
@@ -56,7 +48,15 @@ pub(in crate::recovery) fn recover(
     options: &Options,
     by: impl Fn(Method, &Problem<'_>, &Options) -> Result<Recovered, RecoveryError>,
 ) -> Result<Recovered, RecoveryError> {
-    let base = problem.without_gains();
+    let averages = method == Method::JointGp;
+    let whole = problem.nuisance.scale_error;
+    let [averaged, fitted] = if averages {
+        [whole, None]
+    } else {
+        [None, whole]
+    };
+    let base = problem.without_gains().with_scale_error(averaged);
+    let with_factors = problem.with_scale_error(fitted);
     let weighted = options.weighting != WeightRule::Unweighted && problem.noise().is_some();
     let noise = |found: &Recovered| {
         if weighted {
@@ -68,7 +68,7 @@ pub(in crate::recovery) fn recover(
     };
     // A pattern is found by its levels, of which only the ratio is known with the scale, and by a
     // wide search: along the scale many patterns fit nearly as well.
-    let by_ratio = method == Method::JointTwoValued && problem.nuisance.scale_error.is_some();
+    let by_ratio = method == Method::JointTwoValued && fitted.is_some();
     let quick = Options {
         bands: None,
         probabilities: by_ratio && options.probabilities,
@@ -88,22 +88,18 @@ pub(in crate::recovery) fn recover(
         frames: DVector::zeros(problem.phi.ncols()),
         whole,
         noise: noise(&start),
+        averages,
         directions: 0.0,
     };
-    let scale_error = problem.nuisance.scale_error.unwrap_or(0.0);
     let settle = |method: Method, at: &mut Estimates| -> Result<(usize, bool), RecoveryError> {
         let (mut steps, mut settled) = (0, false);
         while steps < MOST_STEPS && !settled {
             steps += 1;
-            let linear = Linear::about(problem, at);
+            let linear = Linear::about(&with_factors, at);
             let found = linear.about_one(by(method, &linear.problem(&base), &quick)?);
             let noise = noise(&found);
-            if method == Method::JointGp {
+            if averages {
                 at.directions = found.effective_rank;
-                // On the way already: where there is no solution picture and ν fall to nothing.
-                if at.directions * scale_error * scale_error > MOST_AVERAGED {
-                    return Err(TOO_ROUGHLY);
-                }
             }
             settled = (noise / at.noise - 1.0).abs() < SETTLED;
             // Where whole steps go back and forth, half of them do not.
@@ -120,7 +116,7 @@ pub(in crate::recovery) fn recover(
     };
     let (steps, mut settled) = settle(method, &mut at)?;
     let steps = before + steps;
-    let linear = Linear::about(problem, &at);
+    let linear = Linear::about(&with_factors, &at);
     let shared = Shared::default();
     let about = linear.problem(&base).sharing(&shared);
     let mut found = linear.about_one(by(method, &about, options)?);
@@ -130,8 +126,13 @@ pub(in crate::recovery) fn recover(
         _ => None,
     };
     found.log_evidence = evidence;
+    let gains = found.nuisance.as_ref().and_then(|n| n.gains.as_ref());
+    let whole = gains.and_then(|gains| gains.whole.as_ref());
+    let averaged = whole.filter(|_| averages).map(|of| 1.0 + of.size[0]);
     let widened = widened(&found, || {
-        let known = base.about(problem.phi, &linear.d, &Soft::NONE);
+        let d = &linear.d * averaged.unwrap_or(1.0);
+        let known = base.with_scale_error(None);
+        let known = known.about(problem.phi, &d, &Soft::NONE);
         let quick = Options {
             spreads: options.spreads,
             ..quick

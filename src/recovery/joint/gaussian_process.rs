@@ -13,6 +13,10 @@
 //! > ln p(y | τ, ℓ, η)/p_best = −½ (zᵀS⁻¹z + ln det S − ln det E),   p_best that of an exact fit
 //! > E\[ρ | y\] = ½ + K Vᵀ S⁻¹ z,   cov\[ρ | y\] = K − K Vᵀ S⁻¹ V K
 //!
+//! Where the scale is known to σ_s only, the photographs know the light x = (1 + ε) ρ, and ε ~ N(0,
+//! σ_s²) is one more number of the prior, over which is summed ([`level`]): τ stands for (1 + ε) τ
+//! on the lattice below, so that one S serves all ε.
+//!
 //! How much and over what length a picture varies (τ, ℓ, η) the photographs say only roughly, and
 //! of what is finer than they resolve nothing: one best triple gives errors that are too small. So
 //! all triples of a lattice count, each by its evidence p(y | τ, ℓ, η) and by how often pictures
@@ -28,6 +32,8 @@
 //! that were drawn one by one. Of whole pictures of the first and the third 95 and 80 % are
 //! likeliest with η = 0; were that believed, dead leaves would be covered to 93 %, at worst 89 %.
 
+mod interval;
+mod level;
 mod mixture;
 
 use nalgebra::{DMatrix, DVector};
@@ -36,8 +42,11 @@ use super::coordinates::Coordinates;
 use super::exponential::Exponential;
 use super::scale;
 use crate::num::control::{Control, Steps};
-use crate::num::linalg::{Cholesky, product};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::num::linalg::product;
+use crate::recovery::{
+    Choice, Deviations, Method, Options, Parameter, Problem, Recovered, RecoveryError,
+};
+use level::{Level, scales};
 
 /// Mean and standard deviation of a picture's mean.
 pub(super) const MEAN: f64 = 0.5;
@@ -63,6 +72,8 @@ struct Seen {
     log_errors: f64,
     /// The unit of the reflectances, s₀: 1 unless the scale is free.
     unit: f64,
+    /// 1 + ε, and ln of the share of each.
+    scales: Vec<[f64; 2]>,
 }
 
 /// One length: V k and V k Vᵀ.
@@ -133,7 +144,8 @@ pub(super) fn with_alike(
 ) -> Result<(Recovered, Likeliest), RecoveryError> {
     let unit = scale::unit(problem)?;
     let coordinates = Coordinates::new(Method::JointGp, problem, options, unit, alike)?;
-    let seen = Seen::new(&coordinates, unit);
+    let scale_error = problem.nuisance.scale_error;
+    let seen = Seen::new(&coordinates, unit, scales(scale_error));
     let prior = Exponential::new(problem);
     let (lengths, triples, evidence) = seen.lattice(&prior, problem.control)?;
     let mut found = seen.mixture(&prior, &lengths, &triples, options.bands)?;
@@ -142,16 +154,27 @@ pub(super) fn with_alike(
         length: lengths[best.length].length,
         variance: best.variance,
     };
-    let mut recovered =
-        coordinates.finish(Method::JointGp, problem, options, found.mean.clone())?;
-    coordinates.add_errors(problem, &mut recovered, found.covariance.as_ref());
+    let light = found.light.mean.clone();
+    let mut recovered = coordinates.finish(Method::JointGp, problem, options, light)?;
+    coordinates.add_errors(problem, &mut recovered, found.light.covariance.as_ref());
+    if let Some(known_to) = scale_error {
+        recovered.reflectance = found.mean.clone();
+        let gains = &mut recovered.nuisance.get_or_insert_default().gains;
+        let [factor, standard_error] = found.scale;
+        gains.get_or_insert_default().whole = Some(Deviations {
+            size: DVector::from_element(1, factor - 1.0),
+            standard_error: DVector::from_element(1, standard_error),
+            known_to,
+            picture_given: false,
+        });
+    }
     if problem.nuisance.free_scale {
         found.relative(&recovered.reflectance, options.bands);
     }
     recovered.effective_rank = found.freedom;
     let scale = recovered.nuisance.as_ref().and_then(|n| n.scale);
     recovered.parameter = Parameter::GaussianProcess {
-        spread: best.variance.spread * (unit / scale.unwrap_or(1.0)),
+        spread: best.variance.spread * (unit / (scale.unwrap_or(1.0) * found.scale[0])),
         length: likeliest.length,
     };
     recovered.choice = Choice::Averaged {
@@ -166,7 +189,7 @@ pub(super) fn with_alike(
 }
 
 impl Seen {
-    fn new(coordinates: &Coordinates, unit: f64) -> Self {
+    fn new(coordinates: &Coordinates, unit: f64, scales: Vec<[f64; 2]>) -> Self {
         let k = coordinates.y.len() as f64;
         Self {
             v: coordinates.v.clone(),
@@ -174,40 +197,34 @@ impl Seen {
             errors: &coordinates.errors / (unit * unit),
             log_errors: coordinates.factor.log_det() - 2.0 * k * libm::log(unit),
             unit,
+            scales,
         }
     }
 
-    /// S of a triple; none where rounding makes it indefinite.
-    fn factor(&self, of: &Length, variance: Variance) -> Option<Cholesky> {
-        let level = self.v.column_sum();
-        let [alike, own] = variance.parts();
-        let mut s = &of.vkv * alike + &self.errors;
-        for i in 0..s.nrows() {
-            s[(i, i)] += own;
-        }
-        s.ger(MEAN * MEAN, &level, &level, 1.0);
-        Cholesky::new(&s)
-    }
-
-    /// y − ½ V 1.
-    fn left(&self) -> DMatrix<f64> {
-        let left = &self.y - self.v.column_sum() * MEAN;
-        DMatrix::from_column_slice(left.len(), 1, left.as_slice())
-    }
-
-    /// ln of p(y | τ, ℓ, η) over that of a picture that fits y exactly.
-    fn evidence(&self, of: &Length, variance: Variance, left: &DMatrix<f64>) -> f64 {
-        let Some(factor) = self.factor(of, variance) else {
+    /// ln of p(y | τ, ℓ, η) p(τ) over p of a picture that fits y exactly, but for the common factor
+    /// of p(τ); that of τ = 0 is 1.
+    fn weight(&self, of: &Length, variance: Variance) -> f64 {
+        let Some(level) = Level::new(self, of, variance) else {
             return f64::NEG_INFINITY;
         };
-        let chi2 = factor.forward(left.clone()).norm_squared();
-        -0.5 * (chi2 + factor.log_det() - self.log_errors)
+        let each = self.by_scale(&level, variance);
+        let most = each.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = each.iter().map(|log| libm::exp(log - most)).sum();
+        most + libm::log(sum) + 0.5 * self.log_errors
     }
 
-    /// The same times p(τ), but for the prior's common factor.
-    fn weight(&self, of: &Length, variance: Variance, left: &DMatrix<f64>) -> f64 {
-        let z = (libm::log(variance.spread) - LN_SPREAD[0]) / LN_SPREAD[1];
-        self.evidence(of, variance, left) - 0.5 * z * z
+    /// The same of each scale, but for the errors.
+    fn by_scale(&self, level: &Level, variance: Variance) -> Vec<f64> {
+        let own = |&[scale, share]: &[f64; 2]| {
+            let z = (libm::log(variance.spread / scale) - LN_SPREAD[0]) / LN_SPREAD[1];
+            let varied = if variance.spread > 0.0 {
+                0.5 * z * z
+            } else {
+                0.0
+            };
+            level.log(scale) + share - varied
+        };
+        self.scales.iter().map(own).collect()
     }
 
     /// The triples that count, likeliest first, with weights that sum to 1, and ln of p(y) over
@@ -217,8 +234,10 @@ impl Seen {
         prior: &Exponential,
         control: Control<'_>,
     ) -> Result<(Vec<Length>, Vec<Triple>, f64), RecoveryError> {
-        let left = self.left();
-        let [least, most] = STEPS;
+        let steps_to = |scale: f64| libm::log(scale) / STEP;
+        let [low, high] = [self.scales.first(), self.scales.last()];
+        let least = STEPS[0] + low.map_or(0, |of| steps_to(of[0]).floor() as i32);
+        let most = STEPS[1] + high.map_or(0, |of| steps_to(of[0]).ceil() as i32);
         let (mut lengths, mut triples, mut best) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
         let mut start = 0;
         let tried = prior.lengths();
@@ -236,7 +255,7 @@ impl Seen {
                 };
                 let mut known: Vec<(i32, f64)> = Vec::new();
                 let mut at = |step: i32| {
-                    let weight = self.weight(&of, variance(step), &left);
+                    let weight = self.weight(&of, variance(step));
                     known.push((step, weight));
                     weight
                 };
@@ -267,7 +286,7 @@ impl Seen {
             }
             lengths.push(of);
         }
-        let spreads: f64 = (least..=most)
+        let spreads: f64 = (STEPS[0]..=STEPS[1])
             .map(|step| (f64::from(step) * STEP / LN_SPREAD[1]).powi(2))
             .map(|z2| libm::exp(-0.5 * z2))
             .sum();
@@ -278,7 +297,7 @@ impl Seen {
                 spread: 0.0,
                 independent: 0.0,
             };
-            let weight = self.evidence(of, variance, &left) + share;
+            let weight = self.weight(of, variance) + share;
             best = best.max(weight);
             triples.push(Triple {
                 length: 0,

@@ -15,6 +15,8 @@ pub(super) struct Estimates {
     pub(super) whole: f64,
     /// 1 where the noise is known, else its standard deviation, W.
     pub(super) noise: f64,
+    /// Whether the method integrates over ε: x is the light (1 + ε) ρ then, and `whole` stays 0.
+    pub(super) averages: bool,
     /// ν, directions of x that are of a prior's size, over which ε is averaged; 0 of methods whose
     /// x has no size beforehand.
     pub(super) directions: f64,
@@ -24,37 +26,42 @@ impl Estimates {
     /// Goes this share of the way to what was found; by how much a factor differs from that at
     /// most, in units of its σ.
     pub(super) fn take(&mut self, found: &Recovered, share: f64) -> f64 {
-        self.x = &self.x * (1.0 - share) + found.seen() * share;
+        let mut seen = found.seen();
         let mut change = 0.0f64;
         if let Some(gains) = found.nuisance.as_ref().and_then(|n| n.gains.as_ref()) {
             if let Some(frames) = &gains.frames {
                 change = (&frames.size - &self.frames).amax() / frames.known_to;
                 self.frames = &self.frames * (1.0 - share) + &frames.size * share;
             }
-            if let Some(whole) = &gains.whole {
+            if let Some(whole) = &gains.whole
+                && self.averages
+            {
+                seen *= 1.0 + whole.size[0];
+            } else if let Some(whole) = &gains.whole {
                 change = change.max((whole.size[0] - self.whole).abs() / whole.known_to);
                 self.whole += share * (whole.size[0] - self.whole);
             }
         }
+        self.x = &self.x * (1.0 - share) + seen * share;
         change
     }
 }
 
 /// The linear problem.
 ///
-/// Of what the photographs say of (1 + ε) x the prior of x says p(ε) ∝ (1 + ε)^(−ν) more than a
-/// pattern ε m can: the same as if ε were known about
+/// Of what the photographs say of the mean of (1 + ε_l) x the prior of x says p ∝ (1 + mean)^(−ν)
+/// more than patterns ε_l m can: the same as if ε_l were known about
 ///
-/// > μ = −ν σ_s²/(1 + ε₀),   μ_l = −ν σ_g²/(n (1 + ε₀_l)),   n frames that count
+/// > μ_l = −ν σ_g²/(n (1 + ε₀_l)),   n frames that count
 ///
-/// in place of 0, where ln (1 + ε) is linear about ε₀.
+/// in place of 0, where ln (1 + ε_l) is linear about ε₀_l.
 pub(super) struct Linear {
     pub(super) phi: DMatrix<f64>,
     pub(super) d: DMatrix<f64>,
     soft: Soft,
-    /// μ_l and μ.
-    means: (DVector<f64>, f64),
-    /// ln of what that prior has more at ε₀ than one about 0 times (1 + ε)^(−ν).
+    /// μ_l.
+    means: DVector<f64>,
+    /// ln of what that prior has more at ε₀ than one about 0 times (1 + mean)^(−ν).
     log_prior: f64,
 }
 
@@ -73,7 +80,6 @@ impl Linear {
             own
         };
         let nuisance = &problem.nuisance;
-        let square = |known: Option<f64>| known.map_or(0.0, |known| known * known);
         let (pixels, spots) = problem.phi.shape();
         let is_seen = |l: usize| (0..pixels).any(|p| nuisance.counts(p, l));
         let seen = (0..spots).filter(|l| is_seen(*l)).count();
@@ -81,16 +87,13 @@ impl Linear {
         let frames = DVector::from_fn(at.frames.len(), |l, _| {
             f64::from(u8::from(is_seen(l))) * of_each / factor(at.frames[l])
         });
-        let common = at.directions / whole;
-        let frame_mean = &frames * -square(nuisance.frame_gain);
-        let mean = -common * square(nuisance.scale_error);
+        let frame_mean = &frames * -nuisance.frame_gain.map_or(0.0, |known| known * known);
         // What the linear terms in ε hold at the estimates, less their means.
         let shift = by_frame(&light, &|l, frame| {
-            (frame - 1.0 - frame_mean[l]) * whole + (whole - 1.0 - mean) * frame
+            (frame - 1.0 - frame_mean[l]) * whole + (whole - 1.0) * frame
         });
         // Factors that are not asked for stay 0, and so do their means.
-        let log_prior =
-            frames.dot(&(&at.frames - &frame_mean * 0.5)) + common * (at.whole - 0.5 * mean);
+        let log_prior = frames.dot(&(&at.frames - &frame_mean * 0.5));
         Self {
             phi: problem.phi + shift,
             d: by_frame(d, &|_, frame| frame * whole),
@@ -99,7 +102,7 @@ impl Linear {
                 whole: nuisance.scale_error.map(|known| (&at.x / whole, known)),
                 noise: at.noise,
             },
-            means: (frame_mean, mean),
+            means: frame_mean,
             log_prior,
         }
     }
@@ -109,10 +112,7 @@ impl Linear {
         let gains = found.nuisance.as_mut().and_then(|n| n.gains.as_mut());
         if let Some(gains) = gains {
             if let Some(frames) = &mut gains.frames {
-                frames.size += &self.means.0;
-            }
-            if let Some(whole) = &mut gains.whole {
-                whole.size.add_scalar_mut(self.means.1);
+                frames.size += &self.means;
             }
         }
         found.log_evidence = found.log_evidence.map(|evidence| evidence + self.log_prior);
@@ -142,6 +142,7 @@ pub(super) fn about_grey<T>(
         frames: DVector::zeros(problem.phi.ncols()),
         whole: 0.0,
         noise: 1.0,
+        averages: false,
         directions: 0.0,
     };
     of(&Linear::about(problem, &at).problem(&problem.without_gains()))

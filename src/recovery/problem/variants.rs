@@ -21,6 +21,19 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same with a factor of all light that is known to this, or exactly.
+    pub(in crate::recovery) fn with_scale_error(&self, scale_error: Option<f64>) -> Self {
+        let nuisance = Nuisance {
+            scale_error,
+            ..self.nuisance
+        };
+        Problem {
+            nuisance,
+            shared: None,
+            ..*self
+        }
+    }
+
     /// The same with a free scale of all light.
     pub(in crate::recovery) fn with_free_scale(&self) -> Self {
         let nuisance = Nuisance {

@@ -1,10 +1,9 @@
 //! The mixture of all priors that count, and its bands.
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
-
 use nalgebra::{DMatrix, DVector};
 
-use super::{Length, MEAN, Seen, Triple};
+use super::interval::interval;
+use super::{Length, Level, Seen, Triple};
 use crate::num::linalg::{gram_product, tr_product};
 use crate::recovery::joint::exponential::Exponential;
 use crate::recovery::joint::reduced::over_brightest;
@@ -16,6 +15,9 @@ const MOST_COVARIANCE: usize = 2048;
 /// The least probability of the shortest length, or of one reflectance throughout, at which the
 /// photographs do not speak against it: it is then within the middle 95 %.
 const NOT_EXCLUDED: f64 = 0.025;
+
+/// A factor of the light less likely than the likeliest by more than e to this counts for nothing.
+const FOR_NOTHING: f64 = 25.0;
 
 /// The first two moments of some triples' pictures, by their weights.
 struct Moments {
@@ -53,8 +55,72 @@ impl Moments {
     }
 }
 
+/// The light (1 + ε) ρ, or ρ.
+pub(super) struct Picture {
+    pub(super) mean: DVector<f64>,
+    /// None of more than [`MOST_COVARIANCE`] elements.
+    pub(super) covariance: Option<DMatrix<f64>>,
+}
+
+impl Picture {
+    fn zero(n: usize) -> Self {
+        Self {
+            mean: DVector::zeros(n),
+            covariance: (n <= MOST_COVARIANCE).then(|| DMatrix::zeros(n, n)),
+        }
+    }
+
+    /// Adds x/s^power of parts of one triple, x = g + M h + errors of covariance C, where the mean M
+    /// has the moments of each part; the covariance is that of the second moments until
+    /// [`Picture::centred`].
+    fn add(&mut self, power: i32, parts: &[Part], [g, h]: [&DVector<f64>; 2], c: &DMatrix<f64>) {
+        let [mut all, mut first, mut second] = [0.0; 3];
+        for part in parts {
+            let [mean, variance] = part.mean;
+            let over = part.scale.powi(power);
+            self.mean.axpy(part.weight / over, g, 1.0);
+            self.mean.axpy(part.weight / over * mean, h, 1.0);
+            let weight = part.weight / (over * over);
+            all += weight;
+            first += weight * mean;
+            second += weight * (mean * mean + variance);
+        }
+        let Some(covariance) = &mut self.covariance else {
+            return;
+        };
+        let middle = first / all;
+        let found = g + h * middle;
+        *covariance += c * all;
+        covariance.ger(all, &found, &found, 1.0);
+        covariance.ger(second - first * middle, h, h, 1.0);
+    }
+
+    /// The same in another unit, about its mean.
+    fn centred(mut self, unit: f64) -> Self {
+        if let Some(covariance) = &mut self.covariance {
+            covariance.ger(-1.0, &self.mean, &self.mean, 1.0);
+            *covariance *= unit * unit;
+        }
+        self.mean *= unit;
+        self
+    }
+}
+
+/// A triple with one factor of the light: its weight, 1 + ε, and the picture's mean with its
+/// variance.
+struct Part {
+    weight: f64,
+    scale: f64,
+    mean: [f64; 2],
+}
+
 /// The mixture of all triples.
 pub(super) struct Mixture {
+    /// (1 + ε) ρ.
+    pub(super) light: Picture,
+    /// 1/E(1/(1 + ε)), by which the mean of ρ makes the mean of the light where that is known, and
+    /// the standard deviation of ε.
+    pub(super) scale: [f64; 2],
     pub(super) mean: DVector<f64>,
     pub(super) standard_error: DVector<f64>,
     pub(super) covariance: Option<DMatrix<f64>>,
@@ -80,59 +146,6 @@ impl Mixture {
     }
 }
 
-/// Newton steps at most, and the step at which they end, over what is possible.
-const MOST_STEPS: usize = 100;
-const ENOUGH: f64 = 1e-13;
-
-/// Between which values element j lies, as much of it beyond either: the x of
-/// Σ w Φ((x − m)/s) = ½ (1 ∓ confidence), by Newton's method, halving where a step leaves what is
-/// possible.
-fn interval(parts: &[(f64, DVector<f64>, DVector<f64>)], j: usize, confidence: f64) -> [f64; 2] {
-    let each = parts.iter().map(|(w, m, v)| {
-        let s = v[j].sqrt();
-        (*w, m[j], s, 1.0 / s.max(f64::MIN_POSITIVE))
-    });
-    let each: Vec<(f64, f64, f64, f64)> = each.collect();
-    // What lies below x, and how densely about it.
-    let about = |x: f64| -> [f64; 2] {
-        let of = |&(w, m, _, one_over_s): &(f64, f64, f64, f64)| {
-            let z = (x - m) * one_over_s;
-            let density = libm::exp(-0.5 * z * z) * one_over_s / (2.0 * PI).sqrt();
-            [0.5 * w * libm::erfc(-z * FRAC_1_SQRT_2), w * density]
-        };
-        each.iter()
-            .map(of)
-            .fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y])
-    };
-    let middle: f64 = each.iter().map(|(w, m, ..)| w * m).sum();
-    let far = each.iter().map(|(_, m, s, _)| m.abs() + 40.0 * s);
-    let far = far.fold(0.0, f64::max);
-    [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence].map(|share| {
-        let (mut low, mut high, mut x) = (-far, far, middle);
-        for _ in 0..MOST_STEPS {
-            let [below, density] = about(x);
-            if below < share {
-                low = x;
-            } else {
-                high = x;
-            }
-            let newton = x + (share - below) / density;
-            let is_within = low < newton && newton < high;
-            let next = if is_within {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
-            let step = (next - x).abs();
-            x = next;
-            if step <= ENOUGH * far {
-                break;
-            }
-        }
-        x
-    })
-}
-
 /// The mean of a_j/b_j, of those that have a b.
 fn mean_ratio(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
     let ratios = a.iter().zip(b.iter()).filter(|(_, b)| **b > 0.0);
@@ -141,6 +154,22 @@ fn mean_ratio(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
 }
 
 impl Seen {
+    /// A triple by factors of the light; those that count for nothing are left out.
+    fn parts(&self, level: &Level, triple: &Triple) -> Vec<Part> {
+        let each = self.by_scale(level, triple.variance);
+        let most = each.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let share = |log: &f64| libm::exp(log - most);
+        let all: f64 = each.iter().map(share).sum();
+        let parts = self.scales.iter().zip(&each);
+        let parts = parts.filter(|(_, log)| **log > most - FOR_NOTHING);
+        let part = |(&[scale, _], log): (&[f64; 2], &f64)| Part {
+            weight: triple.weight * share(log) / all,
+            scale,
+            mean: level.mean(scale),
+        };
+        parts.map(part).collect()
+    }
+
     pub(super) fn mixture(
         &self,
         prior: &Exponential,
@@ -149,10 +178,10 @@ impl Seen {
         confidence: Option<f64>,
     ) -> Result<Mixture, RecoveryError> {
         let n = self.v.ncols();
-        let left = self.left();
-        let level = self.v.column_sum();
         let [mut all, mut unalike, mut uneven] = [(); 3].map(|()| Moments::zero(n));
-        let mut covariance = (n <= MOST_COVARIANCE).then(|| DMatrix::zeros(n, n));
+        let [mut light, mut picture] = [(); 2].map(|()| Picture::zero(n));
+        // E 1/(1 + ε), E (1 + ε) and E (1 + ε)².
+        let mut scale = [0.0; 3];
         let mut parts: Vec<(f64, DVector<f64>, DVector<f64>)> = Vec::new();
         let mut freedom = 0.0;
         let mut alike: Option<(usize, DMatrix<f64>)> = None;
@@ -160,53 +189,58 @@ impl Seen {
         order.sort_by_key(|triple| triple.length);
         for triple in order {
             let (of, [shared, own]) = (&lengths[triple.length], triple.variance.parts());
-            let factor = self
-                .factor(of, triple.variance)
-                .ok_or(RecoveryError::NO_DIRECTION)?;
-            let mut vk = &of.vk * shared + &self.v * own;
-            for mut column in vk.column_iter_mut() {
-                column.axpy(MEAN * MEAN, &level, 1.0);
-            }
-            let towards = factor.forward(vk);
-            let seen = factor.forward(left.clone());
-            let found = (tr_product(&towards, &seen).column(0)).add_scalar(MEAN);
-            let variance = DVector::from_fn(n, |j, _| {
-                (shared + own + MEAN * MEAN - towards.column(j).norm_squared()).max(0.0)
+            let level = Level::new(self, of, triple.variance).ok_or(RecoveryError::NO_DIRECTION)?;
+            let factor = &level.factor;
+            let towards = factor.forward(&of.vk * shared + &self.v * own);
+            // x = g + M h, M the mean, and the variance about it.
+            let g = tr_product(&towards, &level.data).column(0).into_owned();
+            let h = tr_product(&towards, &level.level)
+                .column(0)
+                .map(|x| 1.0 - x);
+            let about = DVector::from_fn(n, |j, _| {
+                (shared + own - towards.column(j).norm_squared()).max(0.0)
             });
+            let own_parts = self.parts(&level, triple);
             // tr(S⁻¹ (S − E)): how much of the data's directions goes into the picture.
             let errors = factor.forward(self.errors.clone());
-            let unseen = factor.forward(errors.transpose()).trace();
-            freedom += triple.weight * (self.y.len() as f64 - unseen);
-            all.add(triple.weight, &found, &variance);
-            if triple.variance.spread > 0.0 {
-                uneven.add(triple.weight, &found, &variance);
-                if triple.length == 0 {
-                    unalike.add(triple.weight, &found, &variance);
+            let errors = factor.forward(errors.transpose());
+            let by_level = tr_product(&level.level, &(&errors * &level.level))[(0, 0)];
+            let seen = self.y.len() as f64 - errors.trace();
+            for part in &own_parts {
+                let [mean, of_mean] = part.mean;
+                freedom += part.weight * (seen + of_mean * by_level);
+                for (sum, power) in scale.iter_mut().zip([-1, 1, 2]) {
+                    *sum += part.weight * part.scale.powi(power);
                 }
+                let found = (&g + &h * mean) / part.scale;
+                let variance = (&about + h.map(|h| h * h * of_mean)) / part.scale.powi(2);
+                all.add(part.weight, &found, &variance);
+                if triple.variance.spread > 0.0 {
+                    uneven.add(part.weight, &found, &variance);
+                    if triple.length == 0 {
+                        unalike.add(part.weight, &found, &variance);
+                    }
+                }
+                parts.push((part.weight, found, variance));
             }
-            if let Some(covariance) = &mut covariance {
+            let mut c = DMatrix::zeros(0, 0);
+            if picture.covariance.is_some() {
                 if alike.as_ref().is_none_or(|(of, _)| *of != triple.length) {
                     alike = Some((triple.length, prior.matrix(of.length)));
                 }
-                let k = alike.as_ref().map(|(_, k)| k);
-                let mut told = DMatrix::zeros(n, n);
-                gram_product(&mut told, &towards);
-                *covariance -= told * triple.weight;
-                if let Some(k) = k {
-                    *covariance += k * (triple.weight * shared);
+                c = DMatrix::zeros(n, n);
+                gram_product(&mut c, &towards);
+                c.neg_mut();
+                if let Some((_, k)) = &alike {
+                    c += k * shared;
                 }
-                for j in 0..n {
-                    covariance[(j, j)] += triple.weight * own;
-                }
-                covariance.add_scalar_mut(triple.weight * MEAN * MEAN);
-                covariance.ger(triple.weight, &found, &found, 1.0);
+                (0..n).for_each(|j| c[(j, j)] += own);
             }
-            parts.push((triple.weight, found, variance));
+            picture.add(1, &own_parts, [&g, &h], &c);
+            light.add(0, &own_parts, [&g, &h], &c);
         }
-        if let Some(covariance) = &mut covariance {
-            covariance.ger(-1.0, &all.mean, &all.mean, 1.0);
-            *covariance *= self.unit * self.unit;
-        }
+        let [picture, light] = [picture, light].map(|of| of.centred(self.unit));
+        let [over, first, second] = scale;
         let variance = all.variance();
         let times = |part: &Moments| mean_ratio(&part.square_about(&all.mean), &variance).sqrt();
         let if_unalike = (unalike.weight > NOT_EXCLUDED).then(|| times(&unalike));
@@ -218,47 +252,15 @@ impl Seen {
             kind: BandKind::Posterior,
         });
         Ok(Mixture {
-            mean: all.mean * self.unit,
+            light,
+            scale: [1.0 / over, (second - first * first).max(0.0).sqrt()],
+            mean: picture.mean,
             standard_error: variance.map(|x| x.max(0.0).sqrt()) * self.unit,
-            covariance,
+            covariance: picture.covariance,
             bands,
             freedom,
             if_unalike,
             if_uneven,
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Of one normal distribution its ± 1.96 σ; of two that are apart, by hand: 2.5 % of all is 5 %
-    /// of the first, and 97.5 % where 5 % of the second are above, at once where it has no width.
-    #[test]
-    fn intervals_by_hand() {
-        let part = |w: f64, m: f64, s: f64| {
-            (
-                w,
-                DVector::from_element(1, m),
-                DVector::from_element(1, s * s),
-            )
-        };
-        let near = |found: [f64; 2], want: [f64; 2]| {
-            let off = found.iter().zip(want).map(|(a, b)| (a - b).abs());
-            assert!(off.fold(0.0, f64::max) < 1e-9, "{found:?} {want:?}");
-        };
-        // Φ⁻¹(0.975) and Φ⁻¹(0.95), by tables.
-        let (two_sided, one_sided) = (1.959_963_984_540_054, 1.644_853_626_951_472_7);
-        let one = [part(1.0, 0.3, 0.02)];
-        near(
-            interval(&one, 0, 0.95),
-            [0.3 - 0.02 * two_sided, 0.3 + 0.02 * two_sided],
-        );
-        let apart = [part(0.5, -1.0, 0.01), part(0.5, 2.0, 0.1)];
-        let want = [-1.0 - 0.01 * one_sided, 2.0 + 0.1 * one_sided];
-        near(interval(&apart, 0, 0.95), want);
-        let sharp = [part(0.5, -1.0, 0.01), part(0.5, 2.0, 0.0)];
-        near(interval(&sharp, 0, 0.95), [-1.0 - 0.01 * one_sided, 2.0]);
     }
 }

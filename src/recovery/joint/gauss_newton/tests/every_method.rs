@@ -65,6 +65,7 @@ fn the_evidence_punishes_factors_that_nothing_asks_for() {
         frames: gains(&found).frames.as_ref().unwrap().size.clone(),
         whole: 0.0,
         noise: 1.0,
+        averages: false,
         directions: 0.0,
     };
     let linear = Linear::about(&problem, &at);
@@ -218,28 +219,6 @@ fn a_free_scale_beside_large_factors_is_found() {
             "{method}: {scale:e}"
         );
     }
-}
-
-/// A scale that is known to 30 %, of photographs that tell all of 16 elements: `joint-gp` refuses
-/// to average over it.
-#[test]
-fn a_scale_that_is_known_too_roughly_is_refused() {
-    let bench = Bench::new(6.0, 4, 8);
-    let phi = bench.phi(&bench.board(2));
-    let stderr = DMatrix::from_element(phi.nrows(), phi.ncols(), 1e-6 * phi.mean());
-    let of = |scale_error| {
-        let nuisance = Nuisance {
-            scale_error: Some(scale_error),
-            ..Nuisance::default()
-        };
-        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-        let problem = problem.with_grids(&[[4, 4]]).unwrap();
-        let problem = problem.with_nuisance(nuisance).unwrap();
-        recover(Method::JointGp, &problem, &Options::default())
-    };
-    assert!(of(0.05).is_ok());
-    let error = of(0.3).unwrap_err().to_string();
-    assert!(error.contains("--free-scale"), "{error}");
 }
 
 /// Right photographs of much larger factors than noise are never refused as understated noise: the
