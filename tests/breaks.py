@@ -1791,11 +1791,11 @@ BREAKS = [
     ),
     Break(
         "A spot that hangs over the wall's end lights what lies on it",
-        "src/model/overhang.rs",
-        "let share = w * v * t * chord.away * density",
-        "let share = 0.99 * w * v * t * chord.away * density",
+        "src/model/overhang/figure.rs",
+        "let share = w * t * area * density",
+        "let share = 0.99 * w * t * area * density",
         "lib",
-        "model::overhang::tests::a_spot_ends_where_its_wall_does",
+        "model::overhang::figure::tests::a_spot_ends_where_its_wall_does",
         14,
     ),
     Break(
@@ -2706,6 +2706,24 @@ BREAKS = [
         "cli",
         "importing::encoded_values_are_told",
         29,
+    ),
+    Break(
+        "Wide spots across two walls light both, in the model as traced",
+        "src/model/wall_point.rs",
+        "    met(scene, (laser.position, direction), share * laser.power)",
+        "    met(scene, (laser.position, direction), share * laser.power).filter(|w| w.surface == Some(id as ShapeId))",
+        "physics",
+        "edges::spots_across_two_walls_are_modelled_as_traced",
+        29,
+    ),
+    Break(
+        "A wall in two parts is lit as one wall is",
+        "src/model/overhang.rs",
+        "if middle.abs() < (1.0 - CORNER) * slope * reach {",
+        "if middle.abs() < 0.0 * slope * reach {",
+        "lib",
+        "model::overhang::tests::a_wall_in_two_parts_is_one_wall",
+        30,
     ),
 ]
 

@@ -225,15 +225,21 @@ pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallP
     met(scene, velocity, point, device, [target, target_rate])
 }
 
-/// The velocity of a point that spot `spot` lights against the wall itself.
+/// The velocity of a point that spot `spot` lights against the wall that it lies on, as the laser
+/// sees it on the plane of the spot: that of q at x = o + s (q − o), s = n·(x − o)/n·(q − o).
 pub(super) fn against_wall(
     scene: &Scene,
     velocity: &Velocity,
     spot: usize,
     point: &WallPoint,
 ) -> DVec3 {
-    let wall = &velocity.surfaces[scene.laser.spots[spot].surface as usize];
-    lit(scene, velocity, spot, point).position - wall.at(point.position)
+    let own = &scene.laser.spots[spot];
+    let wall = &velocity.surfaces[point.surface.unwrap_or(own.surface) as usize];
+    let moves = lit(scene, velocity, spot, point).position - wall.at(point.position);
+    let [line, to] = [point.position, own.target.position].map(|p| p - scene.laser.position);
+    let normal = own.target.normal;
+    let away = normal.dot(line);
+    (moves - line * (normal.dot(moves) / away)) * (normal.dot(to) / away)
 }
 
 impl WallPoint {

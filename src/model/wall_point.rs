@@ -123,8 +123,15 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     let direction = line / d2.sqrt();
     let cos = camera.view.normal().dot(direction);
     let etendue = camera.aperture_area * cos * cos / d2 * share * footprint.area;
-    let ray = Ray::new(camera.position, direction);
-    let nearest = scene
+    met(scene, (camera.position, direction), etendue)
+        .unwrap_or_else(|| WallPoint::nowhere(target, camera.view.normal()))
+}
+
+/// The wall that a ray from the device meets first, with `received` W or length² sr; none where it
+/// meets none.
+fn met(scene: &Scene, (from, direction): (DVec3, DVec3), received: f64) -> Option<WallPoint> {
+    let ray = Ray::new(from, direction);
+    let (met, id) = scene
         .relays()
         .filter_map(|(id, s)| s.shape.intersect(&ray, false).map(|met| (met, id)))
         .min_by(|a, b| {
@@ -134,14 +141,9 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
                 point.normal.dot(direction) >= 0.0
             };
             a.0.t.total_cmp(&b.0.t).then_with(|| back(a).cmp(&back(b)))
-        });
-    match nearest {
-        None => WallPoint::nowhere(target, camera.view.normal()),
-        Some((met, id)) => {
-            let point = scene.surfaces[id].shape.at_intersection(&ray, met);
-            reflecting(scene, id, &point, direction, etendue)
-        }
-    }
+        })?;
+    let point = scene.surfaces[id].shape.at_intersection(&ray, met);
+    Some(reflecting(scene, id, &point, direction, received))
 }
 
 /// A piece of `area` of the facet of the wall about `whole` that the camera sees, at its middle: dE
@@ -176,8 +178,9 @@ pub(super) fn on_wall(scene: &Scene, whole: &WallPoint, at: DVec3) -> DVec3 {
     }
 }
 
-/// The wall where the beam that is aimed at `offset` from the target of spot `spot` meets it, lit
-/// by `share` of the laser's power. Its weight is 0 where the beam misses the wall.
+/// The wall that the beam meets which is aimed at `offset` from the target of spot `spot`, lit by
+/// `share` of the laser's power: not always the wall of the target. Its weight is 0 where the beam
+/// misses all walls.
 pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> WallPoint {
     let laser = &scene.laser;
     let target = &laser.spots[spot].target;
@@ -187,15 +190,8 @@ pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> Wall
     if offset == DVec3::ZERO {
         return reflecting(scene, id, target, direction, share * laser.power);
     }
-    let ray = Ray::new(laser.position, direction);
-    let shape = &scene.surfaces[id].shape;
-    match shape.intersect(&ray, false) {
-        None => WallPoint::nowhere(aim, target.normal),
-        Some(met) => {
-            let point = shape.at_intersection(&ray, met);
-            reflecting(scene, id, &point, direction, share * laser.power)
-        }
-    }
+    met(scene, (laser.position, direction), share * laser.power)
+        .unwrap_or_else(|| WallPoint::nowhere(aim, target.normal))
 }
 
 /// A wall point of surface `id` met along `direction`, with `received` W or length² sr; nothing on

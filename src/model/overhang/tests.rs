@@ -1,0 +1,77 @@
+use crate::model::extent::{Extent, Take};
+use crate::model::{Kernel, converged};
+use crate::scene::Scene;
+
+/// Spots at the origin and beside it, on walls of these rectangles and albedos.
+fn scene(profile: &str, walls: &[(&str, f64)]) -> Scene {
+    let walls: Vec<String> = walls
+        .iter()
+        .enumerate()
+        .map(|(k, (rectangle, albedo))| {
+            format!(
+                "[[surface]]\nname = \"wall {k}\"\nrole = \"relay\"\n\
+                 rectangle = {{ {rectangle} }}\nmaterial = {{ lambertian = {albedo} }}\n"
+            )
+        })
+        .collect();
+    let text = format!(
+        "name = \"seam\"\nunit = \"in\"\nmax_bounces = 3\n\
+         [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [-20, 10, 15]\n\
+         spot_diameter = 0.5\nprofile = \"{profile}\"\n\
+         [laser.spots]\nlayout = \"list\"\npoints = [[0, 0], [-0.1, 1]]\n\
+         [camera]\nposition = [-20, 10, 15]\naperture_area = 0.05\npixels = [2, 1]\n\
+         view = {{ x = [-3.25, -1.5], y = [-2.75, -1.0] }}\n{}\
+         [[surface]]\nname = \"object\"\nrole = \"hidden\"\nelements = [2, 2]\n\
+         rectangle = {{ corner = [-2, 4, 4], u = [4, 0, 0], v = [0, -2, 2] }}\n\
+         material = {{ lambertian = 0.7 }}\n",
+        walls.concat()
+    );
+    Scene::from_toml("seam", &text).unwrap()
+}
+
+/// A wall in two parts is lit as the wall is, wherever across a spot they meet and along whatever
+/// line; and a dark part loses what the other does not have.
+#[test]
+fn a_wall_in_two_parts_is_one_wall() {
+    let extent = Extent {
+        footprints: Take::Centre,
+        ..Extent::UNOBSTRUCTED
+    };
+    let of = |profile: &str, walls: &[(&str, f64)]| {
+        let found = converged(&scene(profile, walls), Kernel::Physical, extent).unwrap();
+        assert!(found.worst().unwrap().1 < 1e-7);
+        found.phi
+    };
+    for profile in ["disc", "gaussian"] {
+        let one = "corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0]";
+        let whole = of(profile, &[(one, 0.8)]);
+        for [left, right] in [
+            [
+                "corner = [-30, -30, 0], u = [30, 0, 0], v = [0, 60, 0]",
+                "corner = [0, -30, 0], u = [30, 0, 0], v = [0, 60, 0]",
+            ],
+            [
+                "corner = [-30, -30, 0], u = [29.95, 0, 0], v = [0, 60, 0]",
+                "corner = [-0.05, -30, 0], u = [30, 0, 0], v = [0, 60, 0]",
+            ],
+            [
+                "corner = [-39, -30, 0], u = [30, 0, 0], v = [18, 60, 0]",
+                "corner = [-9, -30, 0], u = [30, 0, 0], v = [18, 60, 0]",
+            ],
+        ] {
+            let near = |found: &crate::matrix::Matrix| {
+                let off = (found - &whole).component_div(&whole).amax();
+                assert!(off < 1e-7, "{profile} {left}: {off:e}");
+            };
+            near(&of(profile, &[(left, 0.8), (right, 0.8)]));
+            let [bright, dark] =
+                [[0.8, 0.0], [0.0, 0.8]].map(|[a, b]| of(profile, &[(left, a), (right, b)]));
+            // The camera sees the left part alone.
+            assert!(dark.amax() == 0.0 && bright.amin() > 0.0);
+            let [some, more] =
+                [0.3, 0.6].map(|albedo| of(profile, &[(left, 0.8), (right, albedo)]));
+            near(&(&bright + (&more - &some) * (0.8 / 0.3)));
+            near(&(&bright + (&some - &bright) * (0.8 / 0.3)));
+        }
+    }
+}
