@@ -1576,8 +1576,8 @@ BREAKS = [
     Break(
         "Footprints are cut along edges of walls in sight, and by planes of boards",
         "src/model/parts/footprint.rs",
-        "part.triangles = triangles(part, &edges, |at| footprint.at(at) - camera);",
-        "part.triangles = triangles(part, &[], |at| footprint.at(at) - camera);",
+        "part.triangles = cut.map_or_else(Vec::new, |figures| triangles(&figures));",
+        "part.triangles = cut.map_or_else(Vec::new, |_| Vec::new());",
         "physics",
         "divided::a_step_in_the_wall_parts_what_is_seen",
         10,
@@ -1585,8 +1585,8 @@ BREAKS = [
     Break(
         "A ball as a wall is seen past an edge by parts",
         "src/model/patch.rs",
-        "let Shape::Sphere(_) = shape else { return None };",
-        "let Shape::Disc(_) = shape else { return None };",
+        "touching(scene, whole, &rim)",
+        "None",
         "physics",
         "obstacles::a_curved_wall_is_seen_past_an_edge_by_parts",
         10,

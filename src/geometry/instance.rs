@@ -188,6 +188,15 @@ impl Instance {
         (0..self.mesh.triangles().len() as u32).any(|t| in_front(&t))
     }
 
+    /// Whether a vertex lies in front of the plane through `point` with normal `normal`, by more
+    /// than `slack`.
+    pub fn reaches_above(&self, point: DVec3, normal: DVec3, slack: f64) -> bool {
+        let from = self.to_mesh.transform_point3(point);
+        let height = self.to_mesh.transform_vector3(normal) * (self.scale * self.scale);
+        let positions = self.mesh.positions();
+        positions.iter().any(|p| height.dot(*p - from) > slack)
+    }
+
     /// Area of a triangle, length².
     ///
     /// # Panics
@@ -204,6 +213,13 @@ impl Instance {
         self.mesh
             .corners(triangle)
             .map(|c| self.to_world.transform_point3(c))
+    }
+
+    /// The edges across which the plane of the mesh changes, and those along which it ends, by their
+    /// ends in the scene.
+    pub fn folds(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        let folds = self.mesh.folds().iter();
+        folds.map(|ends| ends.map(|p| self.to_world.transform_point3(p)))
     }
 
     fn to_scene(&self, point: Interaction) -> Interaction {

@@ -3,11 +3,14 @@
 mod area_map;
 mod error;
 mod facets;
+mod folds;
 mod group;
 mod nearest;
 mod patch;
 mod query;
 mod rays;
+
+use std::sync::OnceLock;
 
 use super::tree::WideTree;
 use super::{DVec3, Interaction};
@@ -37,6 +40,8 @@ pub struct Mesh {
     bounds: (DVec3, DVec3),
     /// What it is in its texture coordinates, if that is a parallelogram.
     patch: Option<Patch>,
+    /// Once they were asked for.
+    folds: OnceLock<Vec<[DVec3; 2]>>,
     area_map: AreaMap,
     tree: WideTree,
     groups: Vec<Group>,
@@ -127,6 +132,7 @@ impl Mesh {
             uv: None,
             bounds,
             patch: None,
+            folds: OnceLock::new(),
             area_map,
             tree,
             groups,

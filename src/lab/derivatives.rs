@@ -4,6 +4,7 @@
 use std::sync::OnceLock;
 
 use super::misplaced::{ALL, Misplaced, Size};
+use super::over_view::over_view;
 use super::score::Parameter;
 use super::shaded::{Shaded, albedo_of};
 use crate::geometry::DVec3;
@@ -36,6 +37,8 @@ enum Kind {
     Scale,
     /// The same light in every entry: dark current, stray light.
     Offset,
+    /// Light, or a share of it, of a pattern of [`over_view`].
+    OverView(usize),
     /// The albedo of a surface.
     Albedo(usize),
     Misplaced(&'static Misplaced),
@@ -53,6 +56,15 @@ const OF_MIDDLE: f64 = 1e-3;
 const OF_ONE: [&str; 2] = [
     "one photograph alone, scale",
     "one photograph alone, offset",
+];
+/// Patterns over the view, of what: light that all frames share, in percent of its mean, and a
+/// falloff, in percent of the light, both at the ends of the view.
+const OVER_VIEW: [(usize, &str, &str); 5] = [
+    (1, "slope of all entries, x", "% of the mean"),
+    (2, "slope of all entries, y", "% of the mean"),
+    (3, "falloff over the view, x", "%"),
+    (4, "falloff over the view, y", "%"),
+    (5, "falloff to the corners of the view", "%"),
 ];
 /// 1 − cos² of the angle between two derivatives below which no light tells them apart.
 const PARALLEL: f64 = 1e-6;
@@ -100,6 +112,18 @@ impl<'a> SceneDerivatives<'a> {
         let offset = "offset of all entries".to_owned();
         let each = several.then_some(OF_ONE[1]);
         found.add(Kind::Offset, offset, "% of the mean", each);
+        let [columns, rows] = [scene.camera.columns, scene.camera.rows];
+        for (pattern, name, unit) in OVER_VIEW {
+            // Of fewer pixels it is none, or the scale.
+            let varies = match pattern {
+                1 | 3 => columns > 1,
+                2 | 4 => rows > 1,
+                _ => columns.max(rows) > 2,
+            };
+            if varies {
+                found.add(Kind::OverView(pattern), name.to_owned(), unit, None);
+            }
+        }
         let reflecting = scene.relays().chain(scene.hidden());
         for (index, surface) in reflecting.filter(|(_, s)| s.is_lambertian()) {
             let name = albedo_of(&surface.name);
@@ -122,7 +146,7 @@ impl<'a> SceneDerivatives<'a> {
 
     fn add(&mut self, kind: Kind, name: String, unit: &str, each_spot: Option<&str>) {
         let reach = match (kind, unit) {
-            (Kind::Albedo(_) | Kind::Offset, _) => None,
+            (Kind::Albedo(_) | Kind::Offset | Kind::OverView(_), _) => None,
             (_, "deg") => Some(90.0),
             (_, "%") => Some(100.0),
             _ => Some(nearest_and_middle(self.scene)[1]),
@@ -171,7 +195,7 @@ impl<'a> SceneDerivatives<'a> {
 
     fn difference(&self, kind: Kind) -> Option<Matrix> {
         match kind {
-            Kind::Scale | Kind::Offset => self.straight(kind),
+            Kind::Scale | Kind::Offset | Kind::OverView(_) => self.straight(kind),
             // What it does to shadows is not known.
             Kind::Misplaced(_) if self.shaded.is_known() => None,
             _ => Some(self.seen(self.slope(kind, 0.0)?)),
@@ -184,8 +208,27 @@ impl<'a> SceneDerivatives<'a> {
         match kind {
             Kind::Scale => Some(self.phi * 0.01),
             Kind::Offset => Some(Matrix::from_element(rows, columns, 0.01 * self.phi.mean())),
+            Kind::OverView(pattern) => Some(self.over_view(pattern)),
             Kind::Albedo(_) | Kind::Misplaced(_) | Kind::Shift => None,
         }
+    }
+
+    /// Of a pattern over the view, at its ends: a hundredth of the mean, or of the light, which
+    /// falls towards the corners, where x² + y² is 2.
+    fn over_view(&self, pattern: usize) -> Matrix {
+        let (rows, columns) = self.phi.shape();
+        let size = match pattern {
+            1 | 2 => 0.01 * self.phi.mean(),
+            3 | 4 => 0.01,
+            _ => -0.005,
+        };
+        let mut found = Matrix::zeros(rows, columns);
+        for l in 0..columns {
+            let light = self.phi.columns(l, 1).into_owned();
+            let own = over_view(&light, self.scene.camera.columns);
+            found.set_column(l, &(own.column(pattern) * size));
+        }
+        found
     }
 
     /// What is visible of light with nothing in the way.
@@ -210,7 +253,7 @@ impl<'a> SceneDerivatives<'a> {
             }
             Kind::Misplaced(_) if size == 0.0 => self.integrated(self.scene),
             Kind::Misplaced(what) => self.integrated(&what.apply(self.scene, size)?),
-            Kind::Scale | Kind::Offset | Kind::Shift => None,
+            Kind::Scale | Kind::Offset | Kind::OverView(_) | Kind::Shift => None,
         }
     }
 
@@ -222,7 +265,9 @@ impl<'a> SceneDerivatives<'a> {
                 Size::Angle => (self.step / lever(self.scene)).to_degrees(),
                 Size::Length | Size::Random | Size::Positive => self.step,
             },
-            Kind::Scale | Kind::Offset | Kind::Albedo(_) | Kind::Shift => PERCENT,
+            Kind::Scale | Kind::Offset | Kind::OverView(_) | Kind::Albedo(_) | Kind::Shift => {
+                PERCENT
+            }
         };
         let at = |steps: f64| self.deviating(kind, size + steps * step);
         let is_positive = matches!(kind, Kind::Misplaced(what) if what.size == Size::Positive);

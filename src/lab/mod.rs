@@ -185,6 +185,7 @@ mod objects;
 mod occluder;
 pub mod options;
 mod other_light;
+mod over_view;
 mod picard;
 #[cfg(test)]
 mod pictures;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::extent::{Extent, Take};
 use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
 use super::overhang;
-use super::parts::{Ball, FootprintPart, HiddenParts, footprint_parts};
+use super::parts::{Ball, FootprintPart, Footprints, HiddenParts};
 use super::spot::reach;
 use super::wall_point::{self, WallPoint};
 use crate::geometry::DVec3;
@@ -76,11 +76,16 @@ impl<'a> Cut<'a> {
             Take::Integral => scene.laser.profile,
         };
         let reach = reach(profile);
-        let footprint = |p| match extent.footprints {
-            Take::Centre => vec![FootprintPart::centre(scene, p)],
-            Take::Integral => footprint_parts(scene, p),
+        let pixels = 0..scene.camera.pixels();
+        let footprints: Vec<_> = match extent.footprints {
+            Take::Centre => pixels
+                .map(|p| vec![FootprintPart::centre(scene, p)])
+                .collect(),
+            Take::Integral => {
+                let footprints = Footprints::new(scene);
+                pixels.map(|p| footprints.parts(p)).collect()
+            }
         };
-        let footprints: Vec<_> = (0..scene.camera.pixels()).map(footprint).collect();
         let spots = scene.laser.spots.iter().map(|s| Ball {
             middle: s.target.position,
             radius: reach,

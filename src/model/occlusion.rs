@@ -7,17 +7,19 @@
 //!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
-//! centroid. A sphere is taken for facets that touch it, which shrink with the parts. So is what a
-//! lit point sees of a flat cell of the hidden surface. Other walls, cells and large meshes are
-//! asked ray by ray. How finely footprints and spots are divided for this is up to
-//! [`super::divided`].
+//! centroid. A mesh is taken triangle by triangle, as far as these are not too many, and a sphere
+//! for facets that touch it, which shrink with the parts. So is what a lit point sees of a flat cell
+//! of the hidden surface. Other walls, cells and large meshes are asked ray by ray. How finely
+//! footprints and spots are divided for this is up to [`super::divided`].
+
+use rayon::prelude::*;
 
 use super::beam::{Lit, reached};
 use super::blocks::Blocks;
 use super::cells::{HiddenCell, middles};
 use super::cut::exitance;
 use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
-use super::parts::footprint_parts;
+use super::parts::Footprints;
 use super::patch::{Patch, triangles};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{Blockers, DVec3, Hidden, Opaque, Pieces, Ray, ShapeId, area_and_middle};
@@ -53,23 +55,32 @@ impl<'a> Obstructed<'a> {
         let lit = reached(scene, nodes);
         let opaque = Opaque::new(scene.bvh(), |id| obstacles.contains(&id));
         let hidden = opaque.from(scene.camera.position, None, scene.bvh());
-        let pixel = |p| {
-            let parts = footprint_parts(scene, p).into_iter();
+        let footprints = Footprints::new(scene);
+        let squares = |p| {
+            let parts = footprints.parts(p).into_iter();
             let all = parts.flat_map(|part| {
                 let size = part.side / side as f64;
                 let at = move |k: usize, axis: usize| part.from[axis] + k as f64 * size;
                 (0..side * side).map(move |k| ([at(k % side, 0), at(k / side, 1)], size))
             });
-            all.map(|square| Patch::new(scene, p, square, &hidden))
-                .collect()
+            all.collect()
         };
-        let pixels: Vec<Vec<Patch>> = (0..scene.camera.pixels()).map(pixel).collect();
+        let squares: Vec<Vec<_>> = (0..scene.camera.pixels()).map(squares).collect();
+        let pixel = |(p, squares): (usize, &Vec<([f64; 2], f64)>)| {
+            let patches = squares
+                .iter()
+                .flat_map(|s| Patch::all(&footprints, p, *s, &hidden));
+            patches.collect()
+        };
+        let pixels: Vec<Vec<Patch>> = squares.par_iter().enumerate().map(pixel).collect();
+        let more = pixels.iter().map(Vec::len).sum::<usize>()
+            - squares.iter().map(Vec::len).sum::<usize>();
         Self {
             scene,
             kernel,
             opaque,
             blocks: Blocks::new(&pixels, scene.camera.columns),
-            walls: pixels.len() * side * side + lit.iter().map(Vec::len).sum::<usize>(),
+            walls: pixels.len() * side * side + more + lit.iter().map(Vec::len).sum::<usize>(),
             pixels,
             lit,
         }
@@ -88,15 +99,31 @@ impl<'a> Obstructed<'a> {
     /// Whether anything is asked ray by ray.
     pub(super) fn by_rays(&self) -> bool {
         let mut patches = self.pixels.iter().flatten();
-        self.opaque.has_meshes() || patches.any(|p| p.corners.is_none())
+        self.opaque.has_meshes() || patches.any(|p| p.corners.is_none() && p.whole.weight > 0.0)
     }
 
-    /// Whether wall and obstacles are flat, so that shadows can be followed as they move.
+    /// Whether wall and obstacles are flat and no edge of the wall is in sight, so that shadows can
+    /// be followed as they move.
     pub(super) fn is_flat(&self) -> bool {
         let mut patches = self.pixels.iter().flatten();
         let is_flat = |id: ShapeId| self.scene.surfaces[id as usize].shape.is_flat();
-        let flat = |p: &Patch| p.corners.is_some() && p.whole.surface.is_some_and(is_flat);
+        let is_whole = |p: &Patch| p.corners.is_some() && !p.is_cut;
+        let flat = |p: &Patch| is_whole(p) && p.whole.surface.is_some_and(is_flat);
         self.opaque.is_flat() && patches.all(flat)
+    }
+
+    /// What a pixel's light past everything may be off by because it is not known of all of its
+    /// footprint what the camera sees there: half of that, of what lies on a wall.
+    pub(super) fn undecided(&self, pixel: usize) -> f64 {
+        let patches = &self.pixels[pixel];
+        let undecided: f64 = patches.iter().map(|p| p.share * p.undecided).sum();
+        let on_wall = patches.iter().filter(|p| p.whole.weight > 0.0);
+        let all: f64 = on_wall.map(|p| p.share).sum();
+        if undecided > 0.0 {
+            (0.5 * undecided / all).min(1.0)
+        } else {
+            0.0
+        }
     }
 
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
@@ -164,7 +191,7 @@ impl<'a> Obstructed<'a> {
             let open = patch.open && self.is_free(patch.whole.position, to, wall, &Blockers::Any);
             return if open { whole } else { 0.0 };
         };
-        let asked = hidden.asked(corners, Some(wall));
+        let asked = hidden.asked(corners, patch.unasked);
         let seen = patch.seen.iter().map(Vec::as_slice);
         let shadows = met.iter().map(|s| &hidden.shadows[*s]);
         if !pieces.past(seen, corners, shadows) && patch.open && asked.none() {

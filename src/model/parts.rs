@@ -7,6 +7,7 @@
 //! is for its size, the fewer nodes it gets. Triangles are cut along the edges of their texture,
 //! discs where their parameters have a kink.
 
+mod edges;
 mod footprint;
 
 use std::borrow::Cow;
@@ -17,7 +18,7 @@ use super::place::{Place, area_of, grid, grid_of_disc, on_triangle, triangles, w
 use crate::geometry::{DVec3, Shape, ShapeId};
 use crate::num::quadrature::Rule;
 use crate::scene::{Division, Element, Scene, Surface};
-pub(super) use footprint::{FootprintPart, footprint_parts};
+pub(super) use footprint::{Crossed, Figure, FootprintPart, Footprints};
 
 /// Distance from the middle of a part to what it is far from, in radii of the part.
 const FAR: f64 = 2.0;

@@ -23,7 +23,7 @@ pub struct Visible {
     /// How far off that may be: the larger of what the last halving of the cells changed and half
     /// of what the one before changed, and what another division of footprints and spots changes.
     /// At least two standard deviations of what viewpoints leave to chance where camera and laser
-    /// both see a part of a cell.
+    /// both see a part of a cell; and half of what is not known to be in the camera's sight or not.
     /// An estimate: edges of shadows make the integrand bend, and what is smaller than the last
     /// cells may be missed where it is asked ray by ray.
     pub bound: Matrix,
@@ -142,6 +142,9 @@ fn past(
                 bound => bound.max(least),
             });
             bound = bound.zip_map(&next.deviation(), |bound, d| bound.max(DEVIATIONS * d));
+            for (p, mut bound) in bound.row_iter_mut().enumerate() {
+                bound.add_scalar_mut(occlusion.undecided(p));
+            }
             if let Some([used, other]) = &others {
                 bound += (other - used).abs();
                 if walls.is_settled {

@@ -16,6 +16,7 @@ use phicam::lab::Errors;
 
 mod faces;
 mod textured;
+mod walls;
 
 const RECTANGLE: &str = "rectangle = { corner = [3, 11.350951966438567, 4.149048033561433], \
     u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619] }";

@@ -183,6 +183,14 @@ pub(super) fn deviant(name: &str, size: f64) -> Option<Scene> {
 fn light_with(name: &str, size: f64) -> Option<Matrix> {
     match name {
         "offset of all entries" => Some(right().add_scalar(0.01 * size * right().mean())),
+        "slope of all entries, x" => Some(over_view(|x, _| size * x, |_| right().mean())),
+        "slope of all entries, y" => Some(over_view(|_, y| size * y, |_| right().mean())),
+        "falloff over the view, x" => Some(over_view(|x, _| size * x, |light| light)),
+        "falloff over the view, y" => Some(over_view(|_, y| size * y, |light| light)),
+        "falloff to the corners of the view" => Some(over_view(
+            |x, y| -0.5 * size * (x * x + y * y),
+            |light| light,
+        )),
         "one photograph alone, scale" => Some(spot_3(right() * (0.01 * size))),
         "one photograph alone, offset" => {
             let dark = 0.01 * size * right().mean();
@@ -190,6 +198,16 @@ fn light_with(name: &str, size: f64) -> Option<Matrix> {
         }
         _ => deviant(name, size).as_ref().map(truth),
     }
+}
+
+/// Light with so many percent more, of x and y from −1 to 1 over the 5 × 4 pixels, of what is taken
+/// of it.
+fn over_view(percent: impl Fn(f64, f64) -> f64, of: impl Fn(f64) -> f64) -> Matrix {
+    let right = right();
+    Matrix::from_fn(right.nrows(), right.ncols(), |p, l| {
+        let [x, y] = [(p % 5, 2.5), (p / 5, 2.0)].map(|(k, half)| (k as f64 + 0.5) / half - 1.0);
+        right[(p, l)] + 0.01 * percent(x, y) * of(right[(p, l)])
+    })
 }
 
 /// Light with so much more under spot 3.
@@ -280,6 +298,9 @@ fn a_large_deviation_is_followed_to_its_size() {
         ("scale of the view", 20.0),
         ("camera and laser, off the wall", 3.0),
         ("one spot alone, x", 0.4),
+        ("slope of all entries, x", 3.0),
+        ("falloff over the view, y", 5.0),
+        ("falloff to the corners of the view", 5.0),
         ("one photograph alone, scale", 100.0),
         ("one photograph alone, offset", 5.0),
     ] {

@@ -16,14 +16,14 @@ use super::descent::{Problem, State};
 use super::geometry::Light;
 use crate::lab::certainty::Errors;
 use crate::lab::error::LabError;
+use crate::lab::over_view::over_view;
 use crate::matrix::Matrix;
 use crate::num::linalg::{Cholesky, product, tr_product};
 
 /// What of a pattern must be left by other light, picture and geometry, over all of it.
 const LEFT: f64 = 1e-6;
 
-/// The patterns: over the view, x and y from −1 to 1, 1, x and y; and of the light that is found, x
-/// y and x² + y² times that.
+/// The patterns of [`over_view`], of the light that is found.
 const KINDS: [(&str, &str, Range<usize>); 2] = [
     (
         "light that all frames share (even, or a slope over the view)",
@@ -60,16 +60,6 @@ struct Sums {
     geometry: Matrix,
     score: Matrix,
     whole: Vec<f64>,
-}
-
-/// Columns of a frame whose light is `m`, W.
-fn patterns(m: &Matrix, columns: usize) -> Matrix {
-    let rows = m.nrows() / columns;
-    let over = |k: usize, n: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
-    Matrix::from_fn(m.nrows(), KINDS[1].2.end, |p, k| {
-        let [x, y] = [over(p % columns, columns), over(p / columns, rows)];
-        [1.0, x, y, m[p] * x, m[p] * y, m[p] * (x * x + y * y)][k]
-    })
 }
 
 impl Problem<'_> {
@@ -125,7 +115,7 @@ impl Problem<'_> {
             let b = &own.b - product(&a, &best.slope.shift);
             let shape = light.frame(l) * rho;
             let shape = Matrix::from_column_slice(shape.len(), 1, shape.as_slice());
-            let s = patterns(&shape, columns);
+            let s = over_view(&shape, columns);
             let roots = self.photographs.roots(l);
             for (k, whole) in sums.whole.iter_mut().enumerate() {
                 let each = s.column(k).component_mul(&roots);

@@ -1,14 +1,11 @@
 //! Parts of a pixel's footprint.
 
+use super::edges::{Edges, Outline, figures};
 use super::{
     Ball, FAR, MOST_FOOTPRINT_CUTS, MOST_FOOTPRINT_PARTS, folded, nodes_a_side, plane_nodes,
 };
-use crate::geometry::{DVec3, Shape};
-use crate::model::place::{CORNERS, area_of, halved, within};
+use crate::model::place::{CORNERS, area_of, within};
 use crate::scene::{Scene, Surface};
-
-/// An edge of a wall nearer to a corner of a part than this fraction of it passes through it.
-const ON_EDGE: f64 = 1e-12;
 
 /// A part of a footprint: corner and side in its coordinates, the ball around what is seen there,
 /// and its distance from the hidden surfaces in radii.
@@ -17,10 +14,44 @@ pub(in crate::model) struct FootprintPart {
     pub side: f64,
     pub ball: Ball,
     distance: f64,
-    /// Where [`edges`] cross it, triangles of its unit square in each of which the camera sees one
-    /// wall, or none, and the front of a flat hidden surface, or its back: the integrand is smooth.
-    /// None where it is whole.
+    /// Where [`Edges`] cross it, triangles of its unit square in each of which the camera sees one
+    /// facet of a wall, or none, and the front of a flat hidden surface, or its back: the integrand
+    /// is smooth. None where it is whole, and where too many edges cross it.
     triangles: Vec<[[f64; 2]; 3]>,
+}
+
+/// A convex piece of a footprint, in its coordinates.
+pub(in crate::model) struct Figure {
+    pub corners: Vec<[f64; 2]>,
+    pub middle: [f64; 2],
+    /// Of the footprint's area.
+    pub share: f64,
+    pub crossed: Crossed,
+}
+
+/// Whether edges of walls cross a square of a footprint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model) enum Crossed {
+    /// None does: the figure is the square.
+    Not,
+    /// They cut it into such figures.
+    Cut,
+    /// So many that it was left whole.
+    TooOften,
+}
+
+impl Figure {
+    /// A point so near to corner `k` that it is this figure's alone.
+    pub(in crate::model) fn within(&self, k: usize) -> [f64; 2] {
+        const OFF: f64 = 1e-6;
+        [0, 1].map(|i| self.corners[k][i] + OFF * (self.middle[i] - self.corners[k][i]))
+    }
+}
+
+/// The footprints of a scene's camera, and the edges of walls that cross them.
+pub(in crate::model) struct Footprints<'a> {
+    pub scene: &'a Scene,
+    edges: Edges,
 }
 
 impl FootprintPart {
@@ -60,115 +91,128 @@ impl FootprintPart {
     }
 }
 
-/// Parts of a footprint, far for their size from every hidden surface.
-pub(in crate::model) fn footprint_parts(scene: &Scene, pixel: usize) -> Vec<FootprintPart> {
-    let footprint = scene.camera.footprint(pixel);
-    let (camera, edges) = (scene.camera.position, edges(scene));
-    let part = |from @ [a, b]: [f64; 2], side: f64| {
-        let middle = footprint.at([a + 0.5 * side, b + 0.5 * side]);
-        let radius = 0.5 * side * (footprint.u.length() + footprint.v.length());
-        let from_surface = |(_, surface): (usize, &Surface)| {
-            (surface.shape.at_position(middle).position - middle).length() / radius
-        };
-        FootprintPart {
-            from,
-            side,
-            ball: Ball { middle, radius },
-            distance: scene
-                .hidden()
-                .map(from_surface)
-                .fold(f64::INFINITY, f64::min),
-            triangles: Vec::new(),
+impl<'a> Footprints<'a> {
+    pub(in crate::model) fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            edges: Edges::new(scene),
         }
-    };
-    let (mut done, mut open) = (Vec::new(), vec![part([0.0; 2], 1.0)]);
-    for cuts in 0..=MOST_FOOTPRINT_CUTS {
-        let mut next = Vec::new();
-        for own in open {
-            let full = done.len() + next.len() + 4 > MOST_FOOTPRINT_PARTS;
-            if cuts == MOST_FOOTPRINT_CUTS || full || own.distance >= FAR {
-                done.push(own);
-            } else {
-                let ([a, b], half) = (own.from, 0.5 * own.side);
-                let corners = [[a, b], [a + half, b], [a, b + half], [a + half, b + half]];
-                next.extend(corners.map(|from| part(from, half)));
-            }
-        }
-        open = next;
     }
-    for part in &mut done {
-        part.triangles = triangles(part, &edges, |at| footprint.at(at) - camera);
-    }
-    done
-}
 
-/// Normals of planes through the camera along which the light of what it sees of flat walls may
-/// jump or bend: through each edge of each, where what it sees jumps, and through the line in which
-/// the planes of two walls, or of a wall and a flat hidden surface, meet, n·w = d and m·w = e: n (e
-/// − m·o) − m (d − n·o), o the camera. Beyond the latter a hidden surface shows its back.
-fn edges(scene: &Scene) -> Vec<DVec3> {
-    let camera = scene.camera.position;
-    let plane = |(_, surface): (usize, &Surface)| match &surface.shape {
-        Shape::Parallelogram(p) => Some((p.normal(), p.normal().dot(p.corner() - camera))),
-        Shape::Disc(d) => Some((d.normal(), d.normal().dot(d.centre() - camera))),
-        _ => None,
-    };
-    let walls: Vec<(DVec3, f64)> = scene.relays().filter_map(plane).collect();
-    let hidden: Vec<(DVec3, f64)> = scene.hidden().filter_map(plane).collect();
-    let sides = |(_, wall): (usize, &Surface)| {
-        let Shape::Parallelogram(p) = &wall.shape else {
-            return Vec::new();
-        };
-        let corners = p.corners().map(|c| c - camera);
-        let side = |k: usize| corners[k].cross(corners[(k + 1) % 4]);
-        (0..4).map(side).collect()
-    };
-    let mut found: Vec<DVec3> = scene.relays().flat_map(sides).collect();
-    for (i, (n, d)) in walls.iter().enumerate() {
-        for (m, e) in walls[..i].iter().chain(&hidden) {
-            let normal = *n * *e - *m * *d;
-            // Parallel planes meet nowhere.
-            if normal.length() > ON_EDGE * (d.abs() + e.abs()) {
-                found.push(normal);
-            }
-        }
-    }
-    found
-}
-
-/// [`FootprintPart::triangles`]: its square in convex figures between the edges that cross it, of
-/// points of the footprint `from` the camera.
-fn triangles(
-    part: &FootprintPart,
-    edges: &[DVec3],
-    from: impl Fn([f64; 2]) -> DVec3,
-) -> Vec<[[f64; 2]; 3]> {
-    let mut figures = vec![CORNERS.to_vec()];
-    for normal in edges {
-        let height = |[a, b]: [f64; 2]| {
-            let at = [part.from[0] + a * part.side, part.from[1] + b * part.side];
-            normal.dot(from(at))
-        };
-        // The height is linear over the square.
-        let corners = CORNERS.map(height);
-        let size = corners.into_iter().map(f64::abs).fold(0.0, f64::max);
-        let slack = ON_EDGE * size;
-        if corners.iter().any(|h| *h > slack) && corners.iter().any(|h| *h < -slack) {
-            let snapped = |at| match height(at) {
-                h if h.abs() <= slack => 0.0,
-                h => h,
+    /// Parts of a footprint, far for their size from every hidden surface.
+    pub(in crate::model) fn parts(&self, pixel: usize) -> Vec<FootprintPart> {
+        let scene = self.scene;
+        let footprint = scene.camera.footprint(pixel);
+        let part = |from @ [a, b]: [f64; 2], side: f64| {
+            let middle = footprint.at([a + 0.5 * side, b + 0.5 * side]);
+            let radius = 0.5 * side * (footprint.u.length() + footprint.v.length());
+            let from_surface = |(_, surface): (usize, &Surface)| {
+                (surface.shape.at_position(middle).position - middle).length() / radius
             };
-            let halves = figures.iter().flat_map(|f| halved(f, snapped));
-            figures = halves.filter(|f| f.len() > 2).collect();
+            FootprintPart {
+                from,
+                side,
+                ball: Ball { middle, radius },
+                distance: scene
+                    .hidden()
+                    .map(from_surface)
+                    .fold(f64::INFINITY, f64::min),
+                triangles: Vec::new(),
+            }
+        };
+        let (mut done, mut open) = (Vec::new(), vec![part([0.0; 2], 1.0)]);
+        for cuts in 0..=MOST_FOOTPRINT_CUTS {
+            let mut next = Vec::new();
+            for own in open {
+                let full = done.len() + next.len() + 4 > MOST_FOOTPRINT_PARTS;
+                if cuts == MOST_FOOTPRINT_CUTS || full || own.distance >= FAR {
+                    done.push(own);
+                } else {
+                    let ([a, b], half) = (own.from, 0.5 * own.side);
+                    let corners = [[a, b], [a + half, b], [a, b + half], [a + half, b + half]];
+                    next.extend(corners.map(|from| part(from, half)));
+                }
+            }
+            open = next;
         }
+        for part in &mut done {
+            let cut = self.cut(pixel, (part.from, part.side), true);
+            part.triangles = cut.map_or_else(Vec::new, |figures| triangles(&figures));
+        }
+        done
     }
+
+    /// A square of a footprint, a corner and a side in its coordinates, along the edges where what
+    /// the camera sees jumps.
+    pub(in crate::model) fn figures(
+        &self,
+        pixel: usize,
+        square @ ([a, b], side): ([f64; 2], f64),
+    ) -> Vec<Figure> {
+        let placed = |[x, y]: [f64; 2]| [a + x * side, b + y * side];
+        let whole = |crossed| Figure {
+            corners: CORNERS.map(placed).to_vec(),
+            middle: placed([0.5; 2]),
+            share: side * side,
+            crossed,
+        };
+        let Some(figures) = self.cut(pixel, square, false) else {
+            return vec![whole(Crossed::TooOften)];
+        };
+        if figures.len() == 1 {
+            return vec![whole(Crossed::Not)];
+        }
+        let piece = |figure: &Outline| {
+            let (area, middle) = centroid(figure);
+            Figure {
+                corners: figure.iter().copied().map(placed).collect(),
+                middle: placed(middle),
+                share: area * side * side,
+                crossed: Crossed::Cut,
+            }
+        };
+        figures.iter().map(piece).collect()
+    }
+
+    /// The figures of a square, in its own coordinates; with the edges where light `bends` only, or
+    /// without.
+    fn cut(
+        &self,
+        pixel: usize,
+        ([u, v], side): ([f64; 2], f64),
+        bends: bool,
+    ) -> Option<Vec<Outline>> {
+        let (footprint, camera) = (
+            self.scene.camera.footprint(pixel),
+            self.scene.camera.position,
+        );
+        let edges = self.edges.of(pixel).filter(|edge| bends || edge.jumps);
+        figures(edges, |[a, b]| {
+            footprint.at([u + a * side, v + b * side]) - camera
+        })
+    }
+}
+
+/// Figures in triangles; none where the only one is the square.
+fn triangles(figures: &[Outline]) -> Vec<[[f64; 2]; 3]> {
     if figures.len() == 1 {
         return Vec::new();
     }
-    let fan = |f: &Vec<[f64; 2]>| {
-        let pairs = f[1..].windows(2);
-        let all = pairs.map(|pair| [f[0], pair[0], pair[1]]);
-        all.collect::<Vec<_>>()
+    figures.iter().flat_map(|f| fan(f)).collect()
+}
+
+/// A convex figure in triangles.
+fn fan(figure: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 3]> {
+    let pairs = figure[1..].windows(2);
+    pairs.map(|pair| [figure[0], pair[0], pair[1]])
+}
+
+/// Area and centroid of a convex figure.
+fn centroid(figure: &[[f64; 2]]) -> (f64, [f64; 2]) {
+    let whole: f64 = fan(figure).map(|t| area_of(&t)).sum();
+    let along = |i: usize| {
+        let moment = |t: [[f64; 2]; 3]| area_of(&t) * within(&t, [1.0 / 3.0; 3])[i];
+        fan(figure).map(moment).sum::<f64>() / whole
     };
-    figures.iter().flat_map(fan).collect()
+    (whole, [along(0), along(1)])
 }
