@@ -212,6 +212,12 @@ impl CalibrationPlan {
         if self.error_field {
             problem.has_field()?;
         }
+        let by_centres = fineness == Fineness::Centres && !problem.geometry.is_obstructed();
+        if by_centres && parameters.iter().any(Parameter::is_spot_size) {
+            return Err(LabError::Unsuited(
+                "the size of the spots changes nothing where each is taken for a point: leave laser.spot_diameter out, or integrate over them (--integration quadrature)",
+            ));
+        }
         let sizes = sizes(scene, &parameters, gains);
         let zero = vec![0.0; problem.unknowns()];
         // Of a noise that is not stated nothing is known yet: that of the first stage.

@@ -133,7 +133,8 @@ impl<'a> SceneDerivatives<'a> {
                 None => found.add(kind, name, "%", None),
             }
         }
-        for what in ALL.iter().filter(|what| what.size != Size::Random) {
+        let tried = |what: &&Misplaced| what.size != Size::Random && what.is_in(scene);
+        for what in ALL.iter().filter(tried) {
             let each = what.each_spot.filter(|_| several);
             let unit = what.size.unit(scene);
             found.add(Kind::Misplaced(what), what.name.to_owned(), unit, each);

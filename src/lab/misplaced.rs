@@ -1,11 +1,11 @@
-//! Scenes in which one thing is not where it is thought to be.
+//! Scenes in which one thing is not where it is thought to be, or spreads light in another way.
 
 use glam::{DAffine3, DQuat};
 
 use crate::geometry::{DVec3, Shape};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::num::warp;
-use crate::scene::{Scene, Twist, Velocity};
+use crate::scene::{Parameter, Scene, Twist, Velocity};
 
 /// Sine of the angle below which a shift stays within a plane.
 const WITHIN: f64 = 1e-9;
@@ -57,6 +57,8 @@ enum Motion {
     Devices(fn(&Scene) -> DVec3),
     /// The walls, flat and looking upwards, bend.
     Bend,
+    /// The [`Parameter`] of this name, of scenes that have it.
+    Number(&'static str),
 }
 
 /// Something that is assumed wrongly.
@@ -84,7 +86,7 @@ const fn length(name: &'static str, motion: Motion) -> Misplaced {
 }
 
 /// Everything that is tried.
-pub(super) const ALL: [Misplaced; 15] = [
+pub(super) const ALL: [Misplaced; 18] = [
     sized("hinge angle", Size::Angle, Motion::Turn(hinge)),
     sized("yaw of S2", Size::Angle, Motion::Turn(yaw_axis)),
     length(
@@ -121,7 +123,14 @@ pub(super) const ALL: [Misplaced; 15] = [
     ),
     sized("wall bent (sagitta)", Size::Positive, Motion::Bend),
     sized("scale of the view", Size::Percent, Motion::ViewScale),
+    number("diameter of the spots", "laser.spot_diameter"),
+    number("roughness of the wall", "wall.roughness"),
+    number("n − 1 of the wall's coat", "wall.ior"),
 ];
+
+const fn number(name: &'static str, of: &'static str) -> Misplaced {
+    sized(name, Size::Percent, Motion::Number(of))
+}
 
 impl Misplaced {
     /// The scene with this misplaced by a size; `None` where the scene does not allow it.
@@ -150,6 +159,18 @@ impl Misplaced {
                 Some(moved)
             }
             Motion::Bend => bent(scene, size),
+            Motion::Number(name) => {
+                let own = Parameter::named(scene, name).ok()?;
+                scene.displaced(&own, &[size]).ok()
+            }
+        }
+    }
+
+    /// Whether the scene has such a thing at all.
+    pub(super) fn is_in(&self, scene: &Scene) -> bool {
+        match self.motion {
+            Motion::Number(name) => Parameter::named(scene, name).is_ok(),
+            _ => true,
         }
     }
 
@@ -182,6 +203,10 @@ impl Misplaced {
             Motion::Devices(along) => {
                 found.camera = along(scene);
                 found.laser = found.camera;
+            }
+            Motion::Number(name) => {
+                let own = Parameter::named(scene, name).ok()?;
+                return Some(scene.velocity(&own, &[0.0], 0));
             }
             Motion::EachSpot | Motion::Bend => return None,
         }

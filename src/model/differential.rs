@@ -172,16 +172,19 @@ impl<'a> Differential<'a> {
     pub fn rate(&self, velocity: &Velocity) -> TermsRate {
         let moves = |id: usize| velocity.surfaces[id] != Default::default();
         let hidden = self.scene.hidden().any(|(id, _)| moves(id));
-        let wall = self.scene.relays().any(|(id, _)| moves(id));
+        // A wall that reflects in another way does so for laser and camera alike.
+        let wall = self.scene.relays().any(|(id, _)| moves(id)) || !velocity.materials.is_empty();
         let view = velocity.view != [0.0; 2]
             || velocity.view_growth != 0.0
             || velocity.camera != DVec3::ZERO;
-        let spots = velocity.spots.iter().any(|s| *s != [0.0; 2]) || velocity.laser != DVec3::ZERO;
+        let spots = velocity.spots.iter().any(|s| *s != [0.0; 2])
+            || velocity.spot_growth != 0.0
+            || velocity.laser != DVec3::ZERO;
         let moves = |(cell, _): &(HiddenCell, usize)| {
             HiddenRate::new(&cell.point, &velocity.surfaces[cell.surface as usize])
         };
         let moves: Vec<HiddenRate> = self.cells.iter().map(moves).collect();
-        let side = |walls: &[WallPoint], rates: &[WallRate], s: usize| {
+        let side = |walls: &[WallPoint], rates: &[WallRate<'_>], s: usize| {
             let to = (&self.cells[s].0.point, &moves[s]);
             let each = walls.iter().zip(rates);
             each.map(|(w, rate)| w.towards_rate(self.scene, rate, to))
@@ -190,7 +193,7 @@ impl<'a> Differential<'a> {
         let camera = (hidden || wall || view).then(|| {
             let aim = ViewRate::new(self.scene, velocity);
             let rate = |w: &WallPoint| aim.as_ref().map_or_else(WallRate::default, |a| a.seen(w));
-            let rates: Vec<Vec<WallRate>> = self
+            let rates: Vec<Vec<WallRate<'_>>> = self
                 .seen
                 .iter()
                 .map(|own| own.iter().map(rate).collect())
@@ -205,7 +208,7 @@ impl<'a> Differential<'a> {
                 let rate = |w| tangent::lit(self.scene, velocity, l, w);
                 own.iter().map(rate).collect::<Vec<_>>()
             };
-            let rates: Vec<Vec<WallRate>> = self.lit.iter().enumerate().map(of).collect();
+            let rates: Vec<Vec<WallRate<'_>>> = self.lit.iter().enumerate().map(of).collect();
             // What comes and goes over the wall's ends, as spots move against it.
             let gained = |l: usize| {
                 let over = |(w, out): &(WallPoint, DVec3)| {

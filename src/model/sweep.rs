@@ -32,6 +32,8 @@ pub(super) fn moves_figures_alone(scene: &Scene, velocity: &Velocity) -> bool {
         view_growth,
         camera,
         laser,
+        spot_growth,
+        materials,
     } = velocity;
     let stands = |(surface, twist): (&Surface, &Twist)| {
         *twist == Twist::default() || !matches!(surface.role, Role::Relay | Role::Hidden)
@@ -40,6 +42,8 @@ pub(super) fn moves_figures_alone(scene: &Scene, velocity: &Velocity) -> bool {
         && *view_growth == 0.0
         && *camera == DVec3::ZERO
         && *laser == DVec3::ZERO
+        && *spot_growth == 0.0
+        && materials.is_empty()
         && spots.iter().all(|s| *s == [0.0; 2])
         && scene.surfaces.iter().zip(surfaces).all(stands)
 }
@@ -54,9 +58,9 @@ pub(super) struct Sweep<'a> {
     /// What the camera sees of each part of each pixel's footprint.
     seen: Vec<Vec<Vec<Vec<Moving>>>>,
     /// The middles of these parts.
-    middles: Vec<Vec<[WallRate; AT_ONCE]>>,
+    middles: Vec<Vec<[WallRate<'a>; AT_ONCE]>>,
     /// What arrives of the parts of each spot.
-    lit: Vec<Vec<[WallRate; AT_ONCE]>>,
+    lit: Vec<Vec<[WallRate<'a>; AT_ONCE]>>,
     /// What moves across each spot.
     edges: Vec<Vec<(WallPoint, Rates)>>,
 }

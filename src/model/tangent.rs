@@ -3,28 +3,32 @@
 //! > x = o + t (τ − o) on the wall's surface:  ẋ = ȯ + t (τ̇ − ȯ) + ṫ (τ − o),  n·(ẋ − v(x)) = 0
 //! > G = a b/R⁴, a = r·n₁, b = −r·n₂, r = x₂ − x₁:  Ġ = (ȧ b + a ḃ)/R⁴ − 4 G r·ṙ/R²
 //!
-//! v(x) is the velocity of the surface, which gives ṫ. Where f_r or the fall-off of a surface that
+//! v(x) is the velocity of the surface, which gives ṫ; where a spot grows, τ moves away from its
+//! middle, and as much light is aimed at it. Where f_r or the fall-off of a surface that
 //! shines varies with direction, its rate is a central difference along these velocities, of
-//! relative error 1e-10. An albedo that varies over the wall moves with the point.
+//! relative error 1e-10, and so is that by numbers of a wall's material. An albedo that varies over
+//! the wall moves with the point.
 
 use super::kernel::{HiddenPoint, Kernel};
 use super::wall_point::{Reflection, WallPoint};
 use crate::geometry::{DVec3, Facing, Shape};
 use crate::scene::material::FallOff;
-use crate::scene::{Scene, Twist, Velocity};
+use crate::scene::{MaterialRate, Scene, Twist, Velocity};
 
 /// Step of a central difference, relative to distances and in radians.
 const STEP: f64 = 1e-5;
 
 /// Velocities of a wall point.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct WallRate {
+pub(super) struct WallRate<'a> {
     pub position: DVec3,
     normal: DVec3,
     /// Of the unit vector to the device.
     device: DVec3,
     /// Relative, of its weight.
     weight: f64,
+    /// Of how its surface reflects.
+    material: Option<&'a MaterialRate>,
 }
 
 /// Velocities of a hidden point, and ω of its surface.
@@ -99,13 +103,13 @@ impl Aim {
 
 /// How a wall point moves on its surface that is met from `device`, which moves by `device_rate`,
 /// towards `target`, which moves by `target_rate`.
-fn met(
+fn met<'a>(
     scene: &Scene,
-    velocity: &Velocity,
+    velocity: &'a Velocity,
     point: &WallPoint,
     [device, device_rate]: [DVec3; 2],
     [target, target_rate]: [DVec3; 2],
-) -> WallRate {
+) -> WallRate<'a> {
     let Some(id) = point.surface.map(|id| id as usize) else {
         return WallRate::default();
     };
@@ -124,7 +128,14 @@ fn met(
         normal: normal_rate(&scene.surfaces[id].shape, twist, point.normal, position),
         device: (rate - unit * unit.dot(rate)) / length,
         weight: 0.0,
+        material: material_of(velocity, point),
     }
+}
+
+/// How the surface of a point reflects in another way.
+fn material_of<'a>(velocity: &'a Velocity, point: &WallPoint) -> Option<&'a MaterialRate> {
+    let own = |m: &&MaterialRate| Some(m.surface) == point.surface.map(|id| id as usize);
+    velocity.materials.iter().find(own)
 }
 
 /// The view as it moves.
@@ -154,7 +165,7 @@ impl<'a> ViewRate<'a> {
     }
 
     /// Of a point that the camera sees: E ∝ (n·(τ − o))²/|τ − o|⁴ · area.
-    pub(super) fn seen(&self, point: &WallPoint) -> WallRate {
+    pub(super) fn seen(&self, point: &WallPoint) -> WallRate<'a> {
         let (camera, aim) = (&self.scene.camera, &self.aim);
         let device = [camera.position, self.velocity.camera];
         let target = aim.target(camera.position, point.position);
@@ -186,7 +197,7 @@ impl<'a> ViewRate<'a> {
     /// Of a piece of a flat wall that the camera sees ([`super::wall_point::seen_piece`]), where
     /// its middle moves by `position` and its area grows by `grown`, relatively: E ∝
     /// (n·l)(n′·l)/l⁴ · area, l from the camera. An albedo that varies moves with the middle.
-    pub(super) fn piece(&self, point: &WallPoint, position: DVec3, grown: f64) -> WallRate {
+    pub(super) fn piece(&self, point: &WallPoint, position: DVec3, grown: f64) -> WallRate<'a> {
         let camera = &self.scene.camera;
         let line = point.position - camera.position;
         let rate = position - self.velocity.camera;
@@ -206,13 +217,19 @@ impl<'a> ViewRate<'a> {
                 + of(camera.view.normal(), self.aim.normal_rate)
                 + of(point.normal, turned)
                 - 4.0 * line.dot(rate) / d2,
+            material: material_of(self.velocity, point),
         }
     }
 }
 
 /// Of a point that spot `spot` lights. Where its profile turns with the wall, it turns as little as
 /// it can, which is all that matters of a profile that is round.
-pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallPoint) -> WallRate {
+pub(super) fn lit<'a>(
+    scene: &Scene,
+    velocity: &'a Velocity,
+    spot: usize,
+    point: &WallPoint,
+) -> WallRate<'a> {
     let laser = &scene.laser;
     let own = &laser.spots[spot];
     let (at, normal) = (own.target.position, own.target.normal);
@@ -220,7 +237,8 @@ pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallP
     let aim = Aim::new(scene, velocity, id, at, normal, velocity.spots[spot]);
     let target = aim.target(laser.position, point.position);
     let turn = aim.normal.cross(aim.normal_rate);
-    let target_rate = aim.at_rate + turn.cross(target - aim.at);
+    let away = target - aim.at;
+    let target_rate = aim.at_rate + turn.cross(away) + away * velocity.spot_growth;
     let device = [laser.position, velocity.laser];
     met(scene, velocity, point, device, [target, target_rate])
 }
@@ -247,7 +265,7 @@ impl WallPoint {
     pub(super) fn towards_rate(
         &self,
         scene: &Scene,
-        rate: &WallRate,
+        rate: &WallRate<'_>,
         (hidden, moves): (&HiddenPoint, &HiddenRate),
     ) -> f64 {
         let r = hidden.position - self.position;
@@ -268,7 +286,11 @@ impl WallPoint {
         if g == 0.0 {
             return 0.0;
         }
-        let f = self.reflected(scene, hidden.position);
+        // Not needed where a material alone changes.
+        let f = match hidden.fall_off {
+            None if moved == 0.0 => 0.0,
+            _ => self.reflected(scene, hidden.position),
+        };
         let fall = hidden
             .fall_off
             .map_or(1.0, |own| own.towards(hidden.normal, -r));
@@ -291,6 +313,9 @@ impl WallPoint {
                 albedo,
                 device,
             } => {
+                let by_material = rate.material.map_or(0.0, |material| {
+                    material.of(albedo, self.normal, device, r.normalize_or_zero())
+                });
                 let surface = &scene.surfaces[surface];
                 let at = |h: f64| {
                     let normal = (self.normal + rate.normal * h).normalize_or_zero();
@@ -298,7 +323,7 @@ impl WallPoint {
                     let to = (r + r_rate * h).normalize_or_zero();
                     surface.brdf(albedo, normal, device, to)
                 };
-                self.weight * difference(&at)
+                self.weight * (difference(&at) + by_material)
             }
         };
         let fall_rate = hidden.fall_off.map_or(0.0, |fall_off| {

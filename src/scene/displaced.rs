@@ -6,6 +6,7 @@
 //! turn and grow about their mean, then they shift. Spots and view stay at their (x, y) where the
 //! wall moves, as in a scene file.
 
+mod reflection;
 mod velocity;
 mod written;
 
@@ -17,7 +18,7 @@ use super::parameter::{Kind, Motion, Parameter};
 use super::surface::bvh;
 use super::{Role, Scene, SceneError, laser, parse};
 use crate::geometry::DVec3;
-pub use velocity::{Twist, Velocity};
+pub use velocity::{MaterialRate, Twist, Velocity};
 
 /// What parameters do to a scene.
 struct Displacement {
@@ -28,6 +29,8 @@ struct Displacement {
     camera: DVec3,
     laser: DVec3,
 }
+
+const PERCENT: f64 = 0.01;
 
 /// Angle and growth of the spots' layout.
 struct Layouts {
@@ -107,8 +110,8 @@ impl Scene {
     /// units; text and hash stay the original's.
     ///
     /// # Errors
-    /// [`SceneError`] where a surface has no proper shape then, or a spot or the view leaves the
-    /// wall.
+    /// [`SceneError`] where a surface has no proper shape then, or a material none of its numbers
+    /// within their range, spots have no size, or a spot or the view leaves the wall.
     pub fn displaced(&self, parameters: &[Parameter], values: &[f64]) -> Result<Self, SceneError> {
         let to = self.displacement(parameters, values);
         let moved = || -> Result<Self, Fault> {
@@ -126,7 +129,10 @@ impl Scene {
                 scene.bvh = bvh(&scene.surfaces)?;
                 scene.laser.follow(&scene.surfaces);
             }
+            self.reflect(&mut scene, parameters, values)?;
             if !scene.laser.is_shining() {
+                let size = size_of_spots(parameters, values);
+                scene.laser.profile = scene.laser.profile.grown(size).ok_or_else(no_size)?;
                 scene.laser.position = to.laser;
                 scene.laser.spots = laser::place(&to.spots, to.laser, &scene.surfaces)?;
             }
@@ -175,6 +181,12 @@ impl Scene {
             }
             Kind::Camera(axis) => found.camera = *axis,
             Kind::Laser(axis) => found.laser = *axis,
+            Kind::SpotDiameter => {
+                found.spot_growth = PERCENT / size_of_spots(parameters, values);
+            }
+            Kind::Roughness(_) | Kind::Contrast(_) | Kind::Weight(..) => {
+                found.materials = self.material_rates(parameters, values, k);
+            }
         }
         found
     }
@@ -226,6 +238,7 @@ impl Scene {
                 Kind::Camera(axis) => to.camera += *axis * *value,
                 Kind::Laser(axis) => to.laser += *axis * *value,
                 Kind::Surfaces(..) | Kind::SpotsAngle | Kind::SpotsScale => {}
+                Kind::SpotDiameter | Kind::Roughness(_) | Kind::Contrast(_) | Kind::Weight(..) => {}
             }
         }
         to
@@ -249,6 +262,21 @@ fn xy(p: DVec3) -> [f64; 2] {
 fn ends(scene: &Scene) -> [[f64; 2]; 2] {
     let corners = scene.camera.view.corners();
     [[corners[0].x, corners[2].x], [corners[0].y, corners[2].y]]
+}
+
+/// How many times as wide the spots are.
+fn size_of_spots(parameters: &[Parameter], values: &[f64]) -> f64 {
+    let own = parameters.iter().zip(values);
+    let own = own.filter(|(p, _)| p.is_spot_size());
+    1.0 + PERCENT * own.map(|(_, x)| x).sum::<f64>()
+}
+
+fn no_size() -> Fault {
+    Fault::new(
+        keys!["laser", "spot_diameter"],
+        "spots have no size there",
+        "let them shrink by less than 100 %",
+    )
 }
 
 fn no_shape() -> Fault {

@@ -36,6 +36,22 @@ pub enum Profile {
     },
 }
 
+impl Profile {
+    /// The same so many times as wide; none where nothing would be left of it.
+    pub(super) fn grown(self, factor: f64) -> Option<Self> {
+        let grown = |radius: f64| factor * radius;
+        (factor > 0.0).then(|| match self {
+            Self::Disc { radius } => Self::Disc {
+                radius: grown(radius),
+            },
+            Self::Gaussian { radius } => Self::Gaussian {
+                radius: grown(radius),
+            },
+            Self::Ideal | Self::Shining { .. } => self,
+        })
+    }
+}
+
 /// One laser spot; where a surface shines, what of it shines in one column of Φcam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {

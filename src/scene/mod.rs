@@ -58,7 +58,7 @@ pub use axes::AxesTable;
 pub use builtin::{Builtin, builtins};
 pub use camera::Camera;
 pub use dimension::{Dimension, NoNumber};
-pub use displaced::{Twist, Velocity};
+pub use displaced::{MaterialRate, Twist, Velocity};
 pub use element::Element;
 pub use error::{Place, SceneError};
 pub use files::{COPIES, Referenced};

@@ -1,4 +1,5 @@
-//! Numbers of a scene's geometry that measurements know only roughly, by their names.
+//! Numbers of a scene that measurements know only roughly, by their names: of its geometry, and how
+//! its laser and its walls spread light.
 //!
 //! | name | what it is | unit |
 //! | --- | --- | --- |
@@ -9,21 +10,30 @@
 //! | `spots.3.x`, `spots.3.y` | shift of spot 3 alone, from 0 | the scene's |
 //! | `view.x`, `.y`, `.scale` | shift and growth of what the camera sees | the scene's, % |
 //! | `camera.x`, `.y`, `.z`, `laser.x`, `.y`, `.z` | shift of the pinhole, of where the beams start | the scene's |
+//! | `laser.spot_diameter` | growth of the diameter of all spots | % |
+//! | `WALL.roughness` | growth of the roughness of a wall's material, of all parts of a mixture | % |
+//! | `WALL.ior` | growth of n − 1, n the refractive index of a wall's coat | % |
+//! | `WALL.mixture.K.weight` | what is added to the weight of part K of a wall's mixture, from 0, and taken from all others in proportion | % |
 //!
 //! `WHAT` is a surface, or `hidden`, `wall`, `occluders`: all of that role, moved as one body. A
-//! mesh and a sphere have the axes of the scene for u, v and normal. `spots.shift` stands for
+//! mesh and a sphere have the axes of the scene for u, v and normal. `WALL` is a wall, or `wall`:
+//! all of them. `spots.shift` stands for
 //! `spots.x` and `spots.y`, `spots.each` for both of every spot, `view.shift` and `WHAT.position`
 //! (also of `camera` and `laser`) for their shifts along the axes.
+
+mod motion;
+mod reflection;
 
 use std::collections::BTreeMap;
 
 use super::error::{Fault, keys};
 use super::parse;
 use super::surface::{Surface, of_role};
-use super::{Role, Scene, SceneError};
-use crate::geometry::{DVec3, Shape};
+use super::{Profile, Role, Scene, SceneError};
+use crate::geometry::DVec3;
+use motion::of_surfaces;
 
-/// A number of a scene's geometry, 0 where the scene is as it is written.
+/// A number of a scene, 0 where the scene is as it is written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Its name.
@@ -54,6 +64,14 @@ pub(super) enum Kind {
     Camera(DVec3),
     /// A shift of where the beams start.
     Laser(DVec3),
+    /// Growth of the diameter of all spots.
+    SpotDiameter,
+    /// Growth of the roughness of these walls.
+    Roughness(Vec<usize>),
+    /// Growth of n − 1 of the coats of these walls.
+    Contrast(Vec<usize>),
+    /// What is added to the weight of a part of the mixtures of these walls.
+    Weight(Vec<usize>, usize),
 }
 
 /// A rigid motion with one parameter.
@@ -110,6 +128,11 @@ impl Parameter {
         self.unit == DEGREES
     }
 
+    /// Whether it is the size of the spots, which nothing tells that takes each for a point.
+    pub fn is_spot_size(&self) -> bool {
+        self.kind == Kind::SpotDiameter
+    }
+
     /// Whether its unit is percent.
     pub fn is_percent(&self) -> bool {
         self.unit == PERCENT
@@ -155,8 +178,8 @@ const DEGREES: &str = "deg";
 const PERCENT: &str = "%";
 
 fn unknown(name: &str) -> Fault {
-    let cause = format!("the geometry has no parameter `{name}`");
-    let cure = "use hinge.angle, hidden.normal, hidden.yaw, spots.shift, spots.each, view.shift, view.scale, camera.position, laser.position, or a surface's name with .x .y .z .normal .u .v .pitch .yaw .roll";
+    let cause = format!("the scene has no parameter `{name}`");
+    let cure = "use hinge.angle, hidden.normal, hidden.yaw, spots.shift, spots.each, view.shift, view.scale, camera.position, laser.position, laser.spot_diameter, a surface's name with .x .y .z .normal .u .v .pitch .yaw .roll, or a wall's with .roughness .ior .mixture.0.weight";
     Fault::new(keys![], cause, cure)
 }
 
@@ -210,7 +233,17 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
         ("view", "scale") => Kind::ViewScale,
         ("view", _) => Kind::ViewShift(plane.ok_or_else(missing)?),
         ("camera", _) => Kind::Camera(direction.ok_or_else(missing)?),
+        ("laser", "spot_diameter") => {
+            if scene.laser.profile == Profile::Ideal {
+                let cause =
+                    "the spots are points, and the light changes by the square of their size alone";
+                let cure = "write a laser.spot_diameter above 0 into the scene that is near theirs";
+                return Err(Fault::new(keys!["laser", "spot_diameter"], cause, cure));
+            }
+            Kind::SpotDiameter
+        }
         ("laser", _) => Kind::Laser(direction.ok_or_else(missing)?),
+        (_, "roughness" | "ior" | "weight") => reflection::named(scene, what, which, name)?,
         _ => match what.strip_prefix("spots.").map(str::parse::<usize>) {
             Some(Ok(l)) if l < scene.laser.spots.len() => Kind::Spot(l, plane.ok_or_else(missing)?),
             Some(_) => return Err(missing()),
@@ -219,7 +252,12 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
     };
     let unit = match kind {
         Kind::SpotsAngle | Kind::Surfaces(_, Motion::About { .. }) => DEGREES,
-        Kind::SpotsScale | Kind::ViewScale => PERCENT,
+        Kind::SpotsScale
+        | Kind::ViewScale
+        | Kind::SpotDiameter
+        | Kind::Roughness(_)
+        | Kind::Contrast(_)
+        | Kind::Weight(..) => PERCENT,
         _ => scene.unit.symbol(),
     };
     Ok(Parameter {
@@ -229,8 +267,8 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
     })
 }
 
-/// A motion of surfaces by their name or role.
-fn of_surfaces(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Kind, Fault> {
+/// The surfaces of a name or role.
+fn surfaces(scene: &Scene, what: &str) -> Vec<usize> {
     let role = match what {
         "hidden" => Some(Role::Hidden),
         "wall" => Some(Role::Relay),
@@ -249,72 +287,7 @@ fn of_surfaces(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Kin
         }
     };
     let all = scene.surfaces.iter().enumerate();
-    let ids: Vec<usize> = all
-        .filter(|(_, s)| concerned(s))
+    all.filter(|(_, s)| concerned(s))
         .map(|(id, _)| id)
-        .collect();
-    let Some(first) = ids.first().map(|id| &scene.surfaces[*id]) else {
-        return Err(unknown(name));
-    };
-    let frame = frame(&first.shape);
-    let axis = match which {
-        "x" => DVec3::X,
-        "y" => DVec3::Y,
-        "z" => DVec3::Z,
-        "u" | "pitch" => frame.u,
-        "v" | "yaw" => frame.v,
-        "normal" | "roll" => frame.normal,
-        _ => return Err(unknown(name)),
-    };
-    let motion = match which {
-        "pitch" | "yaw" | "roll" => Motion::About {
-            point: frame.middle,
-            axis,
-        },
-        _ => Motion::Along(axis),
-    };
-    let hidden = || ids.iter().map(|id| &scene.surfaces[*id]);
-    let flat = hidden().all(|s| s.role == Role::Hidden && s.shape.is_flat());
-    let normals = || hidden().map(|s| s.shape.at([0.5; 2]).normal);
-    let within = match motion {
-        Motion::Along(axis) => normals().all(|n| n.dot(axis).abs() < WITHIN),
-        Motion::About { axis, .. } => normals().all(|n| n.cross(axis).length() < WITHIN),
-    };
-    if flat && within {
-        let cause = format!(
-            "`{name}` moves the hidden surface within its own plane: that is where on it the picture lies, no matter of calibration"
-        );
-        let cure = "leave it out; free its shift along the normal and its turns instead";
-        return Err(Fault::new(keys!["surface"], cause, cure));
-    }
-    Ok(Kind::Surfaces(ids, motion))
-}
-
-/// Sine of the angle below which a motion stays within a plane.
-const WITHIN: f64 = 1e-9;
-
-/// The middle of a shape and its axes.
-struct Frame {
-    middle: DVec3,
-    u: DVec3,
-    v: DVec3,
-    normal: DVec3,
-}
-
-fn frame(shape: &Shape) -> Frame {
-    let middle = match shape {
-        Shape::Parallelogram(_) | Shape::Disc(_) => shape.at([0.5; 2]).position,
-        Shape::Sphere(_) | Shape::Instance(_) => shape.circumsphere().0,
-    };
-    let [u, normal] = match shape {
-        Shape::Parallelogram(p) => [p.u().normalize_or_zero(), p.normal()],
-        Shape::Disc(d) => [d.normal().any_orthonormal_vector(), d.normal()],
-        Shape::Sphere(_) | Shape::Instance(_) => [DVec3::X, DVec3::Z],
-    };
-    Frame {
-        middle,
-        u,
-        v: normal.cross(u),
-        normal,
-    }
+        .collect()
 }

@@ -5,6 +5,7 @@ mod errors;
 mod estimates;
 mod light_left_out;
 mod pictures;
+mod spread;
 
 use nalgebra::DVector;
 

@@ -37,7 +37,11 @@ fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Fineness)
                 .unwrap()
                 .terms()
         };
-        let h = 1e-3 * extent;
+        let h = if parameters[k].is_percent() {
+            0.1
+        } else {
+            1e-3 * extent
+        };
         // Of sixth order: a spot over the wall's end loses light by its profile, which changes over
         // its width.
         let [a, b, c] = [h, 2.0 * h, 3.0 * h].map(|h| [at(h), at(-h)]);
@@ -112,6 +116,89 @@ fn rates_of_the_wall_are_those_of_displaced_scenes() {
         Fineness::Areas(1),
     );
     assert!(found.iter().all(|off| *off < 1e-4), "{found:?}");
+}
+
+/// The bench with a wall of this material.
+fn of_material(material: &str) -> Scene {
+    let text = small("bench").text;
+    let own = "lambertian = 0.8";
+    assert!(text.contains(own), "{text}");
+    Scene::from_toml("wall", &text.replacen(own, material, 1)).unwrap()
+}
+
+/// Wider spots, by either profile, that turn with their wall and hang over its end.
+#[test]
+fn rates_of_wider_spots_are_those_of_displaced_scenes() {
+    let names = [
+        "laser.spot_diameter",
+        "spots.x",
+        "spots.scale",
+        "wall.pitch",
+        "hidden.yaw",
+    ];
+    let values = |k: usize| 3.0 - 1.7 * k as f64;
+    let disc = small("bench");
+    let text = disc.text.replacen("\"disc\"", "\"gaussian\"", 1);
+    assert!(text.contains("gaussian"), "{text}");
+    for scene in [disc, Scene::from_toml("gaussian", &text).unwrap()] {
+        let size = parameters(&scene, &names);
+        let values: Vec<f64> = (0..size.len()).map(|k| 0.1 * values(k)).collect();
+        for take in [Fineness::Centres, Fineness::Areas(1), Fineness::Areas(2)] {
+            let off = worst(&scene, &size, &values, take)[0];
+            assert!(off < 1e-8, "{take:?}: {off:e}");
+        }
+    }
+    let over = small("bench")
+        .with_spots_at(&[[0.04, 3.0], [5.0, 15.47]])
+        .unwrap();
+    let off = worst(
+        &over,
+        &parameters(&over, &names[..1]),
+        &[3.0],
+        Fineness::Areas(3),
+    )[0];
+    assert!(off < 1e-6, "{off:e}");
+}
+
+/// Walls that reflect in another way, where things move too; a coat is tabulated by a quadrature
+/// that ends with a kink at the horizon.
+#[test]
+fn rates_of_how_walls_reflect_are_those_of_displaced_scenes() {
+    let mixture = "mixture = [{ weight = 0.5, material = { lambertian = 0.8 } }, { weight = 0.2, material = { oren_nayar = 0.9, roughness = 0.5 } }, { weight = 0.25, material = { conductor = { eta = 0.2, k = 3.9 }, roughness = 0.5 } }]";
+    for (material, names, limit) in [
+        (
+            "oren_nayar = 0.8\nroughness = 0.4",
+            &["wall.roughness", "hidden.yaw"][..],
+            1e-8,
+        ),
+        (
+            mixture,
+            &[
+                "wall.roughness",
+                "wall.mixture.2.weight",
+                "wall.mixture.0.weight",
+                "spots.x",
+            ],
+            1e-8,
+        ),
+        (
+            "paint = 0.8\nroughness = 0.3",
+            &["wall.roughness", "wall.ior", "camera.x"],
+            1e-6,
+        ),
+        (
+            "coated = 0.8\nroughness = 0.3",
+            &["wall.ior", "wall.roughness"],
+            1e-6,
+        ),
+    ] {
+        all_within(
+            &of_material(material),
+            names,
+            |k| 0.3 - 0.2 * k as f64,
+            limit,
+        );
+    }
 }
 
 /// A glossy wall, a curved wall, a surface that shines with a fall-off.

@@ -56,7 +56,7 @@ impl Sweep<'_> {
     fn lit_rate(
         &self,
         piece: &[Moving],
-        (wall, rates): (&WallPoint, &[WallRate; AT_ONCE]),
+        (wall, rates): (&WallPoint, &[WallRate<'_>; AT_ONCE]),
         cell: &HiddenCell,
         whole: f64,
     ) -> Rates {

@@ -48,12 +48,20 @@ fn camera_scale(scene: &Scene) -> f64 {
     wall_point::seen(scene, 0, [0.5; 2], 1.0).weight
 }
 
+/// The same with wide spots and a wall that is rough.
+fn spread(name: &str) -> Scene {
+    let rough = small(name).text;
+    let rough = rough.replacen("lambertian = 0.8", "oren_nayar = 0.8\nroughness = 0.4", 1);
+    let wide = rough.replacen("spot_diameter = 0.0", "spot_diameter = 0.2", 1);
+    Scene::from_toml(name, &wide).unwrap()
+}
+
 /// Every pair of a cell with a pixel or a spot that a shadow's edge meets, by four parameters.
-fn compare(name: &str, names: [&str; 4]) {
-    let base = small(name);
+fn compare(base: &Scene, names: [&str; 4]) {
+    let name = &base.name;
     let each = names
         .iter()
-        .flat_map(|n| Parameter::named(&base, n).unwrap());
+        .flat_map(|n| Parameter::named(base, n).unwrap());
     let parameters: Vec<Parameter> = each.collect();
     let extent = base.camera.view.u().length();
     let small = |k: usize| {
@@ -90,7 +98,10 @@ fn compare(name: &str, names: [&str; 4]) {
             found[..count].iter_mut().for_each(|x| *x *= again);
             found
         };
-        let h = if parameter.is_angle() {
+        let spreads = ["laser.spot_diameter", "wall.roughness"].contains(&&*parameter.name);
+        let h = if spreads {
+            0.1
+        } else if parameter.is_angle() {
             2e-3
         } else {
             1e-5 * extent
@@ -113,7 +124,7 @@ fn compare(name: &str, names: [&str; 4]) {
 #[test]
 fn rates_are_those_of_displaced_occluders() {
     for name in ["screen", "periscope"] {
-        compare(name, NAMES);
+        compare(&small(name), NAMES);
     }
 }
 
@@ -121,19 +132,23 @@ fn rates_are_those_of_displaced_occluders() {
 #[test]
 fn rates_are_those_of_displaced_scenes() {
     compare(
-        "periscope",
+        &small("periscope"),
         ["hidden.normal", "hidden.yaw", "hinge.angle", "view.x"],
     );
     compare(
-        "periscope",
+        &small("periscope"),
         ["spots.x", "spots.angle", "camera.z", "spots.y"],
     );
     compare(
-        "periscope",
+        &small("periscope"),
         ["view.scale", "wall.normal", "wall.pitch", "occluders.x"],
     );
     compare(
-        "screen",
+        &small("screen"),
         ["hidden.normal", "camera.x", "view.y", "hidden.yaw"],
+    );
+    compare(
+        &spread("periscope"),
+        ["laser.spot_diameter", "wall.roughness", "spots.x", "view.x"],
     );
 }

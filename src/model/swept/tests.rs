@@ -163,6 +163,25 @@ fn a_hidden_mesh_in_cells_has_no_rates_here() {
     assert!(!rates(&with_ball));
 }
 
+/// A plate from x = `plate` on, half way up to the laser, before a wall.
+fn past_plate(spots: &str, plate: f64) -> Scene {
+    let text = format!(
+        "name = \"cut\"\nunit = \"in\"\nmax_bounces = 3\n\
+         [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [0, 0, 10]\n{spots}\n\
+         [camera]\nposition = [-20, 2, 10]\naperture_area = 0.05\npixels = [2, 2]\n\
+         view = {{ x = [-3, -2], y = [-1, 1] }}\n\
+         [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
+         rectangle = {{ corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0] }}\n\
+         [[surface]]\nname = \"board\"\nrole = \"hidden\"\nelements = [2, 2]\n\
+         rectangle = {{ corner = [-8, -2, 6], u = [0, 4, 0], v = [4, 0, 0] }}\n\
+         material = {{ lambertian = 0.7 }}\n\
+         [[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
+         rectangle = {{ corner = [{plate}, -20, 5], u = [20, 0, 0], v = [0, 40, 0] }}\n\
+         material = {{ lambertian = 0.0 }}\n"
+    );
+    Scene::from_toml("cut", &text).unwrap()
+}
+
 /// A plate half way up cuts the beam of a wide spot at x = e: as it moves, twice as fast moves its
 /// shadow, and the light grows by that of the points of the edge,
 ///
@@ -171,23 +190,6 @@ fn a_hidden_mesh_in_cells_has_no_rates_here() {
 /// f the profile and L the light of an ideal spot with nothing in the way.
 #[test]
 fn the_edge_that_cuts_a_beam_takes_its_light_along() {
-    let scene = |spots: &str, plate: f64| {
-        let text = format!(
-            "name = \"cut\"\nunit = \"in\"\nmax_bounces = 3\n\
-             [laser]\npower = 0.005\nwavelength = 632.8e-9\nposition = [0, 0, 10]\n{spots}\n\
-             [camera]\nposition = [-20, 2, 10]\naperture_area = 0.05\npixels = [2, 2]\n\
-             view = {{ x = [-3, -2], y = [-1, 1] }}\n\
-             [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
-             rectangle = {{ corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0] }}\n\
-             [[surface]]\nname = \"board\"\nrole = \"hidden\"\nelements = [2, 2]\n\
-             rectangle = {{ corner = [-8, -2, 6], u = [0, 4, 0], v = [4, 0, 0] }}\n\
-             material = {{ lambertian = 0.7 }}\n\
-             [[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
-             rectangle = {{ corner = [{plate}, -20, 5], u = [20, 0, 0], v = [0, 40, 0] }}\n\
-             material = {{ lambertian = 0.0 }}\n"
-        );
-        Scene::from_toml("cut", &text).unwrap()
-    };
     let light = |scene: &Scene| {
         let extent = crate::model::Extent::FULL;
         let found = crate::model::converged(scene, Kernel::Physical, extent);
@@ -216,12 +218,12 @@ fn the_edge_that_cuts_a_beam_takes_its_light_along() {
         let nodes: Vec<(f64, f64)> = rule.on(-half, half).collect();
         let points: Vec<[f64; 2]> = nodes.iter().map(|(y, _)| [e, *y]).collect();
         // The plate is far to the right of these.
-        let ideal = scene(
+        let ideal = past_plate(
             &format!("spots = {{ layout = \"list\", points = {points:?} }}"),
             9.0,
         );
         let ideal = light(&ideal);
-        let wide = scene(
+        let wide = past_plate(
             &format!(
                 "spot_diameter = {}\nprofile = \"{profile}\"\nspots = {{ layout = \"list\", points = [[0, 0], [-9, 1]] }}",
                 2.0 * radius
@@ -248,6 +250,49 @@ fn the_edge_that_cuts_a_beam_takes_its_light_along() {
             assert!(off < 0.02, "{profile} {e} {p}: {} for {want}", rate[(p, 0)]);
             // The other beam meets nothing.
             assert!(rate[(p, 1)].abs() < 1e-9 * want);
+        }
+    }
+}
+
+/// The same plate before a spot that is small against all distances: of it passes ½ + (t √(1 − t²) +
+/// asin t)/π, t = e/R, or ½ + ½ erf(√2 t), t = e/w, which by the size R or w alone changes by −t
+/// times its derivative by t. All light follows.
+#[test]
+fn a_wider_spot_past_an_edge_passes_what_its_profile_says() {
+    for (profile, t) in [
+        ("disc", 0.4),
+        ("disc", -0.7),
+        ("gaussian", 0.3),
+        ("gaussian", -0.6),
+    ] {
+        let (radius, t): (f64, f64) = (0.02, t);
+        let spot = |place: &str| {
+            format!(
+                "spot_diameter = {}\nprofile = \"{profile}\"\nspots = {{ layout = \"list\", points = [{place}] }}",
+                2.0 * radius
+            )
+        };
+        let wide = past_plate(&spot("[0, 0], [-9, 1]"), 0.5 * radius * t);
+        let size = Parameter::named(&wide, "laser.spot_diameter").unwrap();
+        let velocity = wide.velocity(&size, &[0.0], 0);
+        let swept = Swept::new(&wide, None, &[velocity], Effort::USUAL);
+        let swept = swept.unwrap().unwrap();
+        let rate = swept.rates[0]
+            .as_ref()
+            .unwrap()
+            .phi(&vec![0.7; swept.elements]);
+        let free = Swept::new(&past_plate(&spot("[0, 0]"), 9.0), None, &[], Effort::USUAL);
+        let free = free.unwrap().unwrap().terms.phi(&vec![0.7; swept.elements]);
+        let pi = std::f64::consts::PI;
+        let slope = if profile == "disc" {
+            2.0 * (1.0 - t * t).sqrt() / pi
+        } else {
+            (2.0 / pi).sqrt() * libm::exp(-2.0 * t * t)
+        };
+        for p in 0..4 {
+            let want = -0.01 * t * slope * free[(p, 0)];
+            let off = (rate[(p, 0)] / want - 1.0).abs();
+            assert!(off < 0.02, "{profile} {t} {p}: {} for {want}", rate[(p, 0)]);
         }
     }
 }

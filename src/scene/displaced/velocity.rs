@@ -1,7 +1,7 @@
 //! How things move per unit of a parameter.
 
-use crate::geometry::DVec3;
-use crate::scene::Scene;
+use crate::geometry::{Basis, DVec3};
+use crate::scene::{Material, Scene};
 
 /// The velocity of a rigid body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,7 +36,28 @@ impl Twist {
     }
 }
 
-/// How everything in a scene moves per unit of a parameter.
+/// How f_r of a surface changes per unit of a parameter: a central difference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialRate {
+    /// The surface, by its index.
+    pub surface: usize,
+    /// Its material a step below, and a step above.
+    pub ends: [Material; 2],
+    /// The parameter from one to the other.
+    pub over: f64,
+}
+
+impl MaterialRate {
+    /// ∂f_r/∂θ, sr⁻¹ per unit, with what [`Surface::brdf`](crate::scene::Surface::brdf) takes.
+    pub fn of(&self, albedo: f64, normal: DVec3, wi: DVec3, wo: DVec3) -> f64 {
+        let basis = Basis::around(normal);
+        let [wi, wo] = [wi, wo].map(|w| basis.to_local(w));
+        let [less, more] = self.ends.each_ref().map(|m| m.brdf(albedo, wi, wo));
+        (more - less) / self.over
+    }
+}
+
+/// How everything in a scene moves, and what else changes, per unit of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Velocity {
     /// Of each surface, by its index.
@@ -51,6 +72,10 @@ pub struct Velocity {
     pub camera: DVec3,
     /// Of where the beams start.
     pub laser: DVec3,
+    /// Relative growth of each spot.
+    pub spot_growth: f64,
+    /// Of walls that reflect in another way.
+    pub materials: Vec<MaterialRate>,
 }
 
 impl Velocity {
@@ -63,6 +88,8 @@ impl Velocity {
             view_growth: 0.0,
             camera: DVec3::ZERO,
             laser: DVec3::ZERO,
+            spot_growth: 0.0,
+            materials: Vec::new(),
         }
     }
 }

@@ -2,6 +2,8 @@
 
 use glam::DAffine3;
 
+use super::reflection::write_material;
+use super::size_of_spots;
 use crate::geometry::{DQuat, DVec3, Shape};
 use crate::scene::file::{Layout, MeshTable, RotationTable, SceneFile, SpotsTable, SurfaceTable};
 use crate::scene::parameter::Parameter;
@@ -9,7 +11,7 @@ use crate::scene::surface::Surface;
 use crate::scene::{Scene, SceneError, parse};
 
 impl Scene {
-    /// The file of a scene whose geometry is that of [`Scene::displaced`]; known answers are gone.
+    /// The file of a scene that is that of [`Scene::displaced`]; known answers are gone.
     ///
     /// # Errors
     /// [`SceneError`] where the text of the scene is not that of a file.
@@ -22,7 +24,8 @@ impl Scene {
         let (mut file, _): (SceneFile, _) = parse::parse(&self.name, &self.text)?;
         file.known.clear();
         let each = file.surface.iter_mut().zip(&self.surfaces);
-        for ((table, surface), motion) in each.zip(&to.surfaces) {
+        for (id, ((table, surface), motion)) in each.zip(&to.surfaces).enumerate() {
+            write_material(&mut table.material, id, parameters, values);
             if *motion != DAffine3::IDENTITY {
                 write_moved(table, surface, motion, &self.axes);
             }
@@ -31,6 +34,7 @@ impl Scene {
         let spots_move = parameters.iter().any(|p| p.kind.is_of_spots());
         if let Some(laser) = &mut file.laser {
             laser.position = in_file(to.laser);
+            laser.spot_diameter *= size_of_spots(parameters, values);
             if spots_move {
                 laser.spots = SpotsTable {
                     layout: Layout::List,

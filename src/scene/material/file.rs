@@ -1,5 +1,6 @@
 //! Materials as written in a scene file, and what they mean.
 
+mod changed;
 mod kind;
 
 use std::sync::Arc;

@@ -72,6 +72,21 @@ impl Material {
         }
     }
 
+    /// The mixture with `by` added to the weight of one part and taken from all others in
+    /// proportion: their sum stays, and f_r is linear in it. `None` of what is no mixture of
+    /// several, and where a weight leaves the range from 0 to their sum.
+    pub fn with_weight_plus(&self, part: usize, by: f64) -> Option<Self> {
+        let Self::Mixture(parts) = self else {
+            return None;
+        };
+        let weights: Vec<f64> = parts.iter().map(|p| p.weight).collect();
+        let mut parts = parts.to_vec();
+        for (own, weight) in parts.iter_mut().zip(shifted(&weights, part, by)?) {
+            own.weight = weight;
+        }
+        Some(Self::mixture(parts))
+    }
+
     /// The sum of `parts`, with the share of each set by what it reflects.
     pub(super) fn mixture(mut parts: Vec<Part>) -> Self {
         for part in &mut parts {
@@ -88,6 +103,25 @@ impl Material {
         }
         Self::Mixture(parts.into())
     }
+}
+
+/// [`Material::with_weight_plus`] of the weights alone.
+pub(super) fn shifted(weights: &[f64], part: usize, by: f64) -> Option<Vec<f64>> {
+    let sum: f64 = weights.iter().sum();
+    let own = weights.get(part)?;
+    let (weight, others) = (own + by, sum - own);
+    if !(0.0..=sum).contains(&weight) || others <= 0.0 {
+        return None;
+    }
+    let each = weights.iter().enumerate();
+    let each = each.map(|(k, w)| {
+        if k == part {
+            weight
+        } else {
+            w * (sum - weight) / others
+        }
+    });
+    Some(each.collect())
 }
 
 /// The mixture with those parts changed that are `concerned`; `None` where none is, or one cannot
