@@ -57,6 +57,35 @@ pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
     (0..shapes.len() as ShapeId).filter(may).collect()
 }
 
+/// Whether one of these obstacles may stand between a hidden surface and each of these places, the
+/// wall of each and points around what is looked at of it.
+pub(super) fn may_shade(
+    scene: &Scene,
+    obstacles: &[ShapeId],
+    places: impl Iterator<Item = (Option<ShapeId>, Vec<DVec3>)>,
+) -> Vec<bool> {
+    let shapes = scene.bvh().shapes();
+    let hidden: Vec<End> = scene
+        .hidden()
+        .map(|(id, _)| (Some(id as ShapeId), Region::around(&shapes[id])))
+        .collect();
+    let convex = obstacles.iter().map(|id| is_convex(&shapes[*id as usize]));
+    let obstacles: Vec<(ShapeId, bool)> = obstacles.iter().copied().zip(convex).collect();
+    let places: Vec<_> = places.collect();
+    let shaded = |(wall, points): &(Option<ShapeId>, Vec<DVec3>)| {
+        let place = Region::flat(hull(points.iter().copied()));
+        let by = |(id, convex): &(ShapeId, bool)| {
+            let others = hidden
+                .iter()
+                .filter(|(own, _)| *own != Some(*id) || !convex);
+            let mut each = others.map(|(own, region)| (region, [*wall, *own]));
+            each.any(|(region, ends)| scene.bvh().may_block(*id, &place, region, ends))
+        };
+        !points.is_empty() && obstacles.iter().any(by)
+    };
+    places.par_iter().map(shaded).collect()
+}
+
 /// Whether it is a mesh with no vertex in front of any of its triangles, so that it hides nothing
 /// of its own front; very large meshes are taken not to be. Vertices are asked box by box: of most
 /// boxes no corner is in front.

@@ -126,6 +126,28 @@ impl<'a> Obstructed<'a> {
         }
     }
 
+    /// What of the wall each pixel looks at and each spot lights: the wall and points around it.
+    pub(super) fn places(&self) -> [Vec<(Option<ShapeId>, Vec<DVec3>)>; 2] {
+        let seen = |patches: &Vec<Patch>| {
+            let patches = patches.iter().filter(|p| p.whole.weight > 0.0);
+            let around = |p: &Patch| match &p.corners {
+                Some(corners) => corners.to_vec(),
+                None => vec![p.whole.position],
+            };
+            let wall = patches.clone().find_map(|p| p.whole.surface);
+            (wall, patches.flat_map(around).collect())
+        };
+        let lit = |lit: &Vec<Lit>| {
+            let lit = lit.iter().map(|lit| &lit.left).filter(|w| w.weight > 0.0);
+            let wall = lit.clone().find_map(|w| w.surface);
+            (wall, lit.map(|w| w.position).collect())
+        };
+        [
+            self.pixels.iter().map(seen).collect(),
+            self.lit.iter().map(lit).collect(),
+        ]
+    }
+
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
     pub(super) fn most_pairs(&self) -> f64 {
         if self.by_rays() { 8e6 } else { 1e8 }

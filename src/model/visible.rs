@@ -8,7 +8,7 @@ use super::divided;
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
-use super::obstacles::obstacles;
+use super::obstacles::{may_shade, obstacles};
 use super::occlusion::{Both, Obstructed};
 use super::parts::HiddenParts;
 use crate::geometry::ShapeId;
@@ -23,8 +23,9 @@ pub struct Visible {
     /// How far off that may be: the larger of what the last halving of the cells changed and half
     /// of what the one before changed, and what another division of footprints and spots changes.
     /// At least two standard deviations of what viewpoints leave to chance where camera and laser
-    /// both see a part of a cell; and half of what is not known to be in the camera's sight or not.
-    /// An estimate: edges of shadows make the integrand bend, and what is smaller than the last
+    /// both see a part of a cell; where a shadow was met from fewer than ten cells and may be there,
+    /// at least 3/n of what a shadow takes, n cells (of what none of n saw, less than 3/n is there
+    /// in 95 of 100); and half of what is not known to be in the camera's sight or not. An estimate: edges of shadows make the integrand bend, and what is smaller than the last
     /// cells may be missed where it is asked ray by ray.
     pub bound: Matrix,
     /// Cells of the hidden surfaces, in the last step.
@@ -41,6 +42,11 @@ const TOGETHER: usize = 16;
 const SCATTER: f64 = 4.5;
 /// Standard deviations of what viewpoints leave to chance in a bound.
 pub(super) const DEVIATIONS: f64 = 2.0;
+/// Cells whose viewpoints meet the shadows on a pixel or of a spot, from which on what changes from
+/// one division to the next tells how many are missed; and of fewer how many may be, beside twice
+/// the square root of their number.
+const FEW: usize = 10;
+const MISSED: f64 = 3.0;
 /// Things in the way that are left out one by one, at most.
 const MOST_SINGLE: usize = 16;
 /// Entries of each side that are held at once.
@@ -124,13 +130,17 @@ fn past(
     let (occlusion, mut next) = walls.used;
     let others = walls.other.map(|(_, phi)| [next.share(), phi.share()]);
     let mut now = photographs(&occlusion, &coarse);
+    let may = occlusion
+        .places()
+        .map(|places| may_shade(scene, obstacles, places.into_iter()));
     let mut before: Option<Matrix> = None;
     loop {
         let (mut share, old) = (next.share(), now.share());
         let change = (&share - old).abs();
+        let missed = next.missed(&may, cells.len());
         let exhausted = 4.0 * (cells.len() * occlusion.walls) as f64 > occlusion.most_pairs();
         if let Some(before) = &before
-            && (exhausted || moved(&change, &next) < TARGET)
+            && (exhausted || moved(&change, &next) < TARGET && moved(&missed, &next) < TARGET)
         {
             let least = if occlusion.by_rays() {
                 SCATTER * scatter(&change)
@@ -142,6 +152,7 @@ fn past(
                 bound => bound.max(least),
             });
             bound = bound.zip_map(&next.deviation(), |bound, d| bound.max(DEVIATIONS * d));
+            bound = bound.zip_map(&missed, f64::max);
             for (p, mut bound) in bound.row_iter_mut().enumerate() {
                 bound.add_scalar_mut(occlusion.undecided(p));
             }
@@ -189,9 +200,27 @@ struct Photographs {
     all: Matrix,
     left: Matrix,
     variance: Matrix,
+    /// Cells from which each pixel, and each spot, is seen in part or not at all, and the most that
+    /// a shadow takes of what one of them sends to any.
+    met: [(Vec<usize>, f64); 2],
 }
 
 impl Photographs {
+    /// What shadows that may be there and are met from few of `cells` cells may take of each entry.
+    fn missed(&self, may: &[Vec<bool>; 2], cells: usize) -> Matrix {
+        let side = |side: usize| -> Vec<f64> {
+            let (met, most) = &self.met[side];
+            let most = if *most > 0.0 { *most } else { 1.0 };
+            let missed = |(met, may): (&usize, &bool)| {
+                let few = (MISSED + 2.0 * (*met as f64).sqrt()) / cells as f64;
+                f64::from(u8::from(*may && *met < FEW)) * few.min(1.0) * most
+            };
+            met.iter().zip(&may[side]).map(missed).collect()
+        };
+        let [camera, laser] = [0, 1].map(side);
+        Matrix::from_fn(camera.len(), laser.len(), |p, l| camera[p] + laser[l])
+    }
+
     /// Φ with occlusion over Φ without; 1 where there is none.
     fn share(&self) -> Matrix {
         let share = |left: f64, all: f64| if all > 0.0 { left / all } else { 1.0 };
@@ -216,6 +245,13 @@ fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> Photographs 
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
     let zeros = || Matrix::zeros(pixels, spots);
     let [mut all, mut left, mut variance] = [zeros(), zeros(), zeros()];
+    let mut met = [pixels, spots].map(|n| (vec![0; n], 0.0));
+    let shaded = |(met, most): &mut (Vec<usize>, f64), at: usize, [all, left]: Both| {
+        if left < all {
+            met[at] += 1;
+            *most = most.max(1.0 - left / all);
+        }
+    };
     // Sums and squares of what each adds.
     let mut added = [[zeros(), zeros()], [zeros(), zeros()]];
     for chunk in cells.chunks((HELD / (pixels + spots)).max(1)) {
@@ -227,6 +263,14 @@ fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> Photographs 
             .into_par_iter()
             .map(|l| occlusion.laser_and_viewpoints(l, chunk))
             .collect();
+        for cell in &camera {
+            let each = cell.iter().enumerate();
+            each.for_each(|(p, both)| shaded(&mut met[0], p, *both));
+        }
+        for (l, cells) in laser.iter().enumerate() {
+            let each = cells.iter();
+            each.for_each(|[all, left, _]| shaded(&mut met[1], l, [*all, *left]));
+        }
         let c = |which: usize| Matrix::from_fn(pixels, chunk.len(), |p, q| camera[q][p][which]);
         let d = |of: fn([f64; 3]) -> f64| {
             Matrix::from_fn(chunk.len(), spots, |q, l| of(laser[l][q]) * chunk[q].albedo)
@@ -259,5 +303,6 @@ fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> Photographs 
         all,
         left,
         variance,
+        met,
     }
 }
