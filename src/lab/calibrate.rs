@@ -1,8 +1,9 @@
 //! The geometry, estimated from the photographs themselves.
 //!
-//! Geometric parameters of the scene ([`Parameter`](crate::scene::Parameter)), the picture and,
-//! where asked for, a gain of each frame are all unknown. What makes the photographs likeliest with
-//! the picture averaged over all that it may be is the estimate ([`posterior`]). Its errors are
+//! Geometric parameters of the scene and how its spots and walls spread light
+//! ([`Parameter`](crate::scene::Parameter)), the picture and, where asked for, a gain of each frame
+//! are all unknown. What makes the photographs likeliest with the picture averaged over all that it
+//! may be is the estimate ([`posterior`]). Its errors are
 //!
 //! > cov θ = (F + Λ)⁻¹,   or where more than noise is left (F + Λ)⁻¹ M (F + Λ)⁻¹,   M = Σ_c u_c u_cᵀ
 //!

@@ -325,3 +325,6 @@ fn lever(scene: &Scene) -> f64 {
         None => 0.5 * surface.shape.area().sqrt(),
     }
 }
+
+#[cfg(test)]
+mod tests;

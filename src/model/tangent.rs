@@ -9,6 +9,8 @@
 //! relative error 1e-10, and so is that by numbers of a wall's material. An albedo that varies over
 //! the wall moves with the point.
 
+use std::f64::consts::PI;
+
 use super::kernel::{HiddenPoint, Kernel};
 use super::wall_point::{Reflection, WallPoint};
 use crate::geometry::{DVec3, Facing, Shape};
@@ -279,8 +281,16 @@ impl WallPoint {
         let (over, ab) = (1.0 / r.length_squared(), a * b);
         let cosines = a_rate * b + a * b_rate - 4.0 * ab * over * r.dot(r_rate);
         let moved = (cosines + ab * rate.weight) * over * over;
+        let by_material = || {
+            let (albedo, device) = match self.reflection {
+                Reflection::Constant(f) => (f * PI, self.normal),
+                Reflection::Directed { albedo, device, .. } => (albedo, device),
+            };
+            let own = |m: &MaterialRate| m.of(albedo, self.normal, device, r.normalize_or_zero());
+            self.weight * rate.material.map_or(0.0, own)
+        };
         if let (None, Reflection::Constant(f)) = (&hidden.fall_off, &self.reflection) {
-            return self.weight * f * moved;
+            return self.weight * f * moved + by_material() * ab * over * over;
         }
         let g = Kernel::Physical.between(self.position, self.normal, hidden);
         if g == 0.0 {
@@ -313,9 +323,6 @@ impl WallPoint {
                 albedo,
                 device,
             } => {
-                let by_material = rate.material.map_or(0.0, |material| {
-                    material.of(albedo, self.normal, device, r.normalize_or_zero())
-                });
                 let surface = &scene.surfaces[surface];
                 let at = |h: f64| {
                     let normal = (self.normal + rate.normal * h).normalize_or_zero();
@@ -323,7 +330,7 @@ impl WallPoint {
                     let to = (r + r_rate * h).normalize_or_zero();
                     surface.brdf(albedo, normal, device, to)
                 };
-                self.weight * (difference(&at) + by_material)
+                self.weight * difference(&at)
             }
         };
         let fall_rate = hidden.fall_off.map_or(0.0, |fall_off| {
@@ -337,6 +344,6 @@ impl WallPoint {
             };
             difference(&at) / fall
         });
-        f * (moved * fall + g * fall_rate) + f_rate * g
+        f * (moved * fall + g * fall_rate) + (f_rate + by_material()) * g
     }
 }

@@ -184,7 +184,7 @@ impl Scene {
             Kind::SpotDiameter => {
                 found.spot_growth = PERCENT / size_of_spots(parameters, values);
             }
-            Kind::Roughness(_) | Kind::Contrast(_) | Kind::Weight(..) => {
+            Kind::Roughness(_) | Kind::Contrast(_) | Kind::Albedo(_) | Kind::Weight(..) => {
                 found.materials = self.material_rates(parameters, values, k);
             }
         }
@@ -238,7 +238,11 @@ impl Scene {
                 Kind::Camera(axis) => to.camera += *axis * *value,
                 Kind::Laser(axis) => to.laser += *axis * *value,
                 Kind::Surfaces(..) | Kind::SpotsAngle | Kind::SpotsScale => {}
-                Kind::SpotDiameter | Kind::Roughness(_) | Kind::Contrast(_) | Kind::Weight(..) => {}
+                Kind::SpotDiameter
+                | Kind::Roughness(_)
+                | Kind::Contrast(_)
+                | Kind::Albedo(_)
+                | Kind::Weight(..) => {}
             }
         }
         to

@@ -13,6 +13,7 @@
 //! | `laser.spot_diameter` | growth of the diameter of all spots | % |
 //! | `WALL.roughness` | growth of the roughness of a wall's material, of all parts of a mixture | % |
 //! | `WALL.ior` | growth of n − 1, n the refractive index of a wall's coat | % |
+//! | `WALL.albedo` | growth of the albedo of a wall, if it is not the scale of all light | % |
 //! | `WALL.mixture.K.weight` | what is added to the weight of part K of a wall's mixture, from 0, and taken from all others in proportion | % |
 //!
 //! `WHAT` is a surface, or `hidden`, `wall`, `occluders`: all of that role, moved as one body. A
@@ -70,8 +71,19 @@ pub(super) enum Kind {
     Roughness(Vec<usize>),
     /// Growth of n − 1 of the coats of these walls.
     Contrast(Vec<usize>),
+    /// Growth of the albedo of these walls.
+    Albedo(Vec<usize>),
     /// What is added to the weight of a part of the mixtures of these walls.
     Weight(Vec<usize>, usize),
+}
+
+impl Kind {
+    fn is_of_reflection(&self) -> bool {
+        matches!(
+            self,
+            Self::Roughness(_) | Self::Contrast(_) | Self::Albedo(_) | Self::Weight(..)
+        )
+    }
 }
 
 /// A rigid motion with one parameter.
@@ -133,6 +145,11 @@ impl Parameter {
         self.kind == Kind::SpotDiameter
     }
 
+    /// Whether it is of how spots and walls spread light, not of where things are.
+    pub fn is_of_spread(&self) -> bool {
+        self.is_spot_size() || self.kind.is_of_reflection()
+    }
+
     /// Whether its unit is percent.
     pub fn is_percent(&self) -> bool {
         self.unit == PERCENT
@@ -179,7 +196,7 @@ const PERCENT: &str = "%";
 
 fn unknown(name: &str) -> Fault {
     let cause = format!("the scene has no parameter `{name}`");
-    let cure = "use hinge.angle, hidden.normal, hidden.yaw, spots.shift, spots.each, view.shift, view.scale, camera.position, laser.position, laser.spot_diameter, a surface's name with .x .y .z .normal .u .v .pitch .yaw .roll, or a wall's with .roughness .ior .mixture.0.weight";
+    let cure = "use hinge.angle, hidden.normal, hidden.yaw, spots.shift, spots.each, view.shift, view.scale, camera.position, laser.position, laser.spot_diameter, a surface's name with .x .y .z .normal .u .v .pitch .yaw .roll, or a wall's with .roughness .ior .albedo .mixture.0.weight";
     Fault::new(keys![], cause, cure)
 }
 
@@ -243,7 +260,9 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
             Kind::SpotDiameter
         }
         ("laser", _) => Kind::Laser(direction.ok_or_else(missing)?),
-        (_, "roughness" | "ior" | "weight") => reflection::named(scene, what, which, name)?,
+        (_, "roughness" | "ior" | "weight" | "albedo") => {
+            reflection::named(scene, what, which, name)?
+        }
         _ => match what.strip_prefix("spots.").map(str::parse::<usize>) {
             Some(Ok(l)) if l < scene.laser.spots.len() => Kind::Spot(l, plane.ok_or_else(missing)?),
             Some(_) => return Err(missing()),
@@ -257,6 +276,7 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
         | Kind::SpotDiameter
         | Kind::Roughness(_)
         | Kind::Contrast(_)
+        | Kind::Albedo(_)
         | Kind::Weight(..) => PERCENT,
         _ => scene.unit.symbol(),
     };

@@ -10,7 +10,7 @@ use phicam::matrix::Matrix;
 use phicam::model::{Extent, Kernel, Occlusion, converged};
 use phicam::num::statistics::binomial_interval;
 use phicam::num::stream::{Key, Sampling, Stream};
-use phicam::scene::{Parameter, Scene};
+use phicam::scene::Scene;
 use phicam::transport::Traced;
 
 use crate::builtin;
@@ -315,35 +315,6 @@ fn a_large_deviation_is_followed_to_its_size() {
         let off = (first.value - size) / first.stderr;
         println!("{name}: {} ± {} for {size}", first.value, first.stderr);
         assert!(first.is_followed && off.abs() <= 3.5, "{name}: {off}");
-    }
-}
-
-/// Spots of another size and a wall that reflects in another way are named with their size.
-#[test]
-fn what_spreads_light_is_named() {
-    let scene = builtin(
-        "satin",
-        &[
-            ("pixels = [16, 16]", "pixels = [5, 4]"),
-            ("per_side = 30", "per_side = 2"),
-            ("[laser.spots]", "spot_diameter = 1.5\n[laser.spots]"),
-        ],
-    );
-    let errors = Errors::Independent;
-    for (name, parameter, size) in [
-        ("diameter of the spots", "laser.spot_diameter", 60.0),
-        ("roughness of the wall", "wall.roughness", 15.0),
-        ("n − 1 of the wall's coat", "wall.ior", -10.0),
-    ] {
-        let own = Parameter::named(&scene, parameter).unwrap();
-        let light = truth(&scene.displaced(&own, &[size]).unwrap());
-        let found = tested(&scene, &traced(&light, errors, 1), errors, 1e-3);
-        let likely = &score(&found).likely;
-        let own = likely.iter().find(|d| d.name == name);
-        let own = own.unwrap_or_else(|| panic!("{name}: {likely:?}"));
-        let off = (own.value - size) / own.stderr;
-        println!("{name}: {} ± {} for {size}", own.value, own.stderr);
-        assert!(own.is_followed && off.abs() <= 3.5, "{name}: {off}");
     }
 }
 

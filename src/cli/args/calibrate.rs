@@ -27,9 +27,10 @@ pub(in crate::cli) struct CalibrateArgs {
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// What is not known: names of the geometry, e.g. hinge.angle, hidden.normal, hidden.yaw,
-    /// spots.shift, spots.each, view.shift, camera.position, occluders.x, NAME.normal; with =SIGMA
-    /// how well it was measured (degrees, percent, the scene's unit). The scene's [uncertainty]
-    /// unless given
+    /// spots.shift, spots.each, view.shift, camera.position, occluders.x, NAME.normal, and of how
+    /// laser and walls spread light, laser.spot_diameter, wall.roughness, wall.ior, NAME.albedo,
+    /// wall.mixture.0.weight; with =SIGMA how well it was measured (degrees, percent, the scene's
+    /// unit). The scene's [uncertainty] unless given
     #[arg(long, value_name = "NAME[=SIGMA],…", value_delimiter = ',', value_parser = free)]
     pub free: Vec<Free>,
     /// Each frame has an unknown gain too, of this relative standard deviation, up to 1

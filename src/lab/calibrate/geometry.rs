@@ -12,9 +12,11 @@ use crate::model::{
 use crate::scene::{Parameter, Scene, Velocity};
 
 /// Step of a central difference where something stands in the way: part of the distance between the
-/// middles of view and hidden surface; and of angles and percents.
+/// middles of view and hidden surface; of angles and percents; and of percents by which spots and
+/// walls spread light, which change it by much less.
 const OF_DISTANCE: f64 = 1e-3;
 const OF_TURN: f64 = 0.05;
+const OF_SPREAD: f64 = 1.0;
 
 /// Change of the light by the last halving of elements, in noises of the photographs, with which
 /// the cells are fine enough before the last stage: what is left is a half to a fourth of it.
@@ -145,7 +147,9 @@ impl Geometry<'_> {
     /// The central difference by parameter `k` about the values `own`.
     fn difference(&self, own: &[f64], effort: Effort, k: usize) -> Result<Rate, LabError> {
         let p = &self.parameters[k];
-        let step = if p.is_angle() || p.is_percent() {
+        let step = if p.is_of_spread() {
+            OF_SPREAD
+        } else if p.is_angle() || p.is_percent() {
             OF_TURN
         } else {
             OF_DISTANCE * distance(self.scene)

@@ -6,40 +6,46 @@ use crate::scene::material::MaterialTable;
 use crate::scene::parameter::{Kind, Parameter};
 use crate::scene::{Material, Scene};
 
-/// Step of the central difference of f_r, percent: of relative error 1e-10.
+/// Step of the central difference of f_r, percent: of relative error 1e-10, and of a coat about
+/// 1e-3, for nodes of the quadrature of its table pass the horizon.
 const STEP: f64 = 1e-3;
 
 impl Kind {
     /// Whether it changes how surface `id` reflects.
     fn is_of_material(&self, id: usize) -> bool {
         match self {
-            Self::Roughness(ids) | Self::Contrast(ids) | Self::Weight(ids, _) => ids.contains(&id),
+            Self::Roughness(ids)
+            | Self::Contrast(ids)
+            | Self::Albedo(ids)
+            | Self::Weight(ids, _) => ids.contains(&id),
             _ => false,
         }
     }
 
-    /// A material that it changes by a size; none where that leaves the range of scene files.
-    fn change(&self, material: &Material, value: f64) -> Option<Material> {
+    /// A material, and a factor of its albedo, that it changes by a size; none where that leaves
+    /// the range of scene files.
+    fn change(&self, (material, albedo): (Material, f64), value: f64) -> Option<(Material, f64)> {
         let by = PERCENT * value;
-        match self {
-            Self::Roughness(_) => material.with_roughness_times(1.0 + by),
-            Self::Contrast(_) => material.with_contrast_times(1.0 + by),
-            Self::Weight(_, part) => material.with_weight_plus(*part, by),
-            _ => None,
-        }
+        let material = match self {
+            Self::Roughness(_) => material.with_roughness_times(1.0 + by)?,
+            Self::Contrast(_) => material.with_contrast_times(1.0 + by)?,
+            Self::Weight(_, part) => material.with_weight_plus(*part, by)?,
+            Self::Albedo(_) => return (by > -1.0).then_some((material, albedo * (1.0 + by))),
+            _ => material,
+        };
+        Some((material, albedo))
     }
 }
 
-/// The material of surface `id`, one change after the other.
+/// The material of surface `id`, and a factor of its albedo, one change after the other.
 fn changed<'a>(
-    own: &Material,
+    scene: &Scene,
     id: usize,
     changes: impl Iterator<Item = (&'a Kind, f64)>,
-) -> Option<Material> {
+) -> Option<(Material, f64)> {
+    let own = (scene.surfaces[id].material.clone(), 1.0);
     let mut each = changes.filter(|(kind, value)| kind.is_of_material(id) && *value != 0.0);
-    each.try_fold(own.clone(), |material, (kind, value)| {
-        kind.change(&material, value)
-    })
+    each.try_fold(own, |own, (kind, value)| kind.change(own, value))
 }
 
 impl Scene {
@@ -51,12 +57,18 @@ impl Scene {
         values: &[f64],
     ) -> Result<(), Fault> {
         for (id, surface) in scene.surfaces.iter_mut().enumerate() {
+            if !parameters.iter().any(|p| p.kind.is_of_material(id)) {
+                continue;
+            }
             let each = parameters.iter().zip(values).map(|(p, x)| (&p.kind, *x));
-            surface.material = changed(&self.surfaces[id].material, id, each).ok_or_else(|| {
+            let within = |(_, by): &(Material, f64)| by * surface.albedo.largest() <= 1.0;
+            let Some((material, by)) = changed(self, id, each).filter(within) else {
                 let cause = format!("the material of `{}` leaves its range", surface.name);
-                let cure = "change its roughness, index or weight by less";
-                Fault::new(keys!["surface", id, "material"], cause, cure)
-            })?;
+                let cure = "change its roughness, index, albedo or weight by less";
+                return Err(Fault::new(keys!["surface", id, "material"], cause, cure));
+            };
+            surface.material = material;
+            surface.albedo = surface.albedo.map(|rho| rho * by);
         }
         Ok(())
     }
@@ -72,10 +84,14 @@ impl Scene {
             let at = |step: f64| {
                 let each = parameters.iter().zip(values).enumerate();
                 let each = each.map(|(j, (p, x))| (&p.kind, if j == k { x + step } else { *x }));
-                Some((changed(&self.surfaces[id].material, id, each)?, step))
+                Some((changed(self, id, each)?, step))
             };
-            let (less, from) = at(-STEP).or_else(|| at(0.0))?;
-            let (more, to) = at(STEP).or_else(|| at(0.0))?;
+            let here = at(0.0)?;
+            // The albedo that they multiply is that of the changed scene.
+            let [(less, from), (more, to)] = [-STEP, STEP].map(|step| {
+                let ((material, by), step) = at(step).unwrap_or_else(|| here.clone());
+                ((material, by / here.0.1), step)
+            });
             Some(MaterialRate {
                 surface: id,
                 ends: [less, more],
@@ -100,6 +116,7 @@ pub(super) fn write_material(
         match &p.kind {
             Kind::Roughness(ids) if ids.contains(&id) => table.multiply_roughness(1.0 + by),
             Kind::Contrast(ids) if ids.contains(&id) => table.multiply_contrast(1.0 + by),
+            Kind::Albedo(ids) if ids.contains(&id) => table.multiply_albedo(1.0 + by),
             Kind::Weight(ids, part) if ids.contains(&id) => table.add_weight(*part, by),
             _ => {}
         }

@@ -41,8 +41,8 @@ impl Twist {
 pub struct MaterialRate {
     /// The surface, by its index.
     pub surface: usize,
-    /// Its material a step below, and a step above.
-    pub ends: [Material; 2],
+    /// Its material a step below and a step above, and what its albedo is multiplied by there.
+    pub ends: [(Material, f64); 2],
     /// The parameter from one to the other.
     pub over: f64,
 }
@@ -52,7 +52,10 @@ impl MaterialRate {
     pub fn of(&self, albedo: f64, normal: DVec3, wi: DVec3, wo: DVec3) -> f64 {
         let basis = Basis::around(normal);
         let [wi, wo] = [wi, wo].map(|w| basis.to_local(w));
-        let [less, more] = self.ends.each_ref().map(|m| m.brdf(albedo, wi, wo));
+        let [less, more] = self
+            .ends
+            .each_ref()
+            .map(|(m, by)| m.brdf(by * albedo, wi, wo));
         (more - less) / self.over
     }
 }

@@ -19,8 +19,8 @@ fn the_hinge_of_the_bench_is_where_it_is() {
     assert!((axis.x.abs() - 1.0).abs() < 1e-12);
 }
 
-/// Every misplacement changes Φcam in proportion to its size where it is small, and so do numbers of
-/// the spots and of the wall's material.
+/// Every misplacement changes Φcam in proportion to its size where it is small, and so do numbers
+/// of the spots and of the wall's material.
 #[test]
 fn small_misplacements_act_in_proportion() {
     let bench = Scene::load("bench").unwrap();

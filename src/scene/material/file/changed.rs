@@ -3,6 +3,7 @@
 
 use super::{COAT, MaterialTable};
 use crate::scene::material::variants::shifted;
+use crate::scene::texture::AlbedoTable;
 
 impl MaterialTable {
     /// A part's table too, where it is a mixture.
@@ -25,6 +26,29 @@ impl MaterialTable {
                 own.ior = Some(1.0 + factor * (own.ior.unwrap_or(COAT) - 1.0));
             }
         });
+    }
+
+    /// Of an albedo that is one number.
+    pub(in crate::scene) fn multiply_albedo(&mut self, factor: f64) {
+        if self.conductor.is_some() {
+            self.reflectance.get_or_insert(AlbedoTable::Constant(1.0));
+        }
+        if self.measured.is_some() {
+            self.scale.get_or_insert(AlbedoTable::Constant(1.0));
+        }
+        let all = [
+            &mut self.lambertian,
+            &mut self.oren_nayar,
+            &mut self.paint,
+            &mut self.coated,
+            &mut self.reflectance,
+            &mut self.scale,
+        ];
+        for own in all.into_iter().flatten() {
+            if let AlbedoTable::Constant(rho) = own {
+                *rho *= factor;
+            }
+        }
     }
 
     /// Of [`Material::with_weight_plus`](crate::scene::Material::with_weight_plus).
