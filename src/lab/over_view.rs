@@ -2,8 +2,8 @@
 
 use crate::matrix::Matrix;
 
-/// Patterns over the pixels of a frame whose light is `m`, W, pixels × patterns: 1, x and y, from −1
-/// to 1 over the `columns` and the rows of the view; and x, y and x² + y² times `m`.
+/// Patterns over the pixels of a frame whose light is `m`, W, pixels × patterns: 1, x and y, from
+/// −1 to 1 over the `columns` and the rows of the view; and x, y and x² + y² times `m`.
 pub(super) fn over_view(m: &Matrix, columns: usize) -> Matrix {
     let rows = m.nrows() / columns;
     let over = |k: usize, n: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
