@@ -56,8 +56,8 @@ const HELD: usize = 1 << 22;
 /// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four
 /// until Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (8e6
 /// where they are asked ray by ray). Footprints and spots are divided likewise, for the cells that
-/// are cut once; what another division changes then is added. `None` where nothing can stand in the
-/// way.
+/// are cut once; what another division changes for the cells before the last is added. `None` where
+/// nothing can stand in the way.
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
@@ -128,8 +128,8 @@ fn past(
         TARGET,
     )?;
     let (occlusion, mut next) = walls.used;
-    let others = walls.other.map(|(_, phi)| [next.share(), phi.share()]);
-    let mut now = photographs(&occlusion, &coarse);
+    let other = walls.other.map(|(past, _)| past);
+    let (mut now, mut cells_now) = (photographs(&occlusion, &coarse), coarse);
     let may = occlusion
         .places()
         .map(|places| may_shade(scene, obstacles, places.into_iter()));
@@ -156,10 +156,11 @@ fn past(
             for (p, mut bound) in bound.row_iter_mut().enumerate() {
                 bound.add_scalar_mut(occlusion.undecided(p));
             }
-            if let Some([used, other]) = &others {
-                bound += (other - used).abs();
+            if let Some(other) = &other {
+                let (used, other) = (now.share(), photographs(other, &cells_now).share());
+                bound += (&other - &used).abs();
                 if walls.is_settled {
-                    share = share.zip_zip_map(used, other, finer);
+                    share = share.zip_zip_map(&used, &other, finer);
                 }
             }
             return Ok(Some(Visible {
@@ -169,7 +170,7 @@ fn past(
             }));
         }
         parts = parts.quartered();
-        cells = light(&parts);
+        cells_now = std::mem::replace(&mut cells, light(&parts));
         let finer = photographs(&occlusion, &cells);
         (now, before, next) = (next, Some(change), finer);
     }

@@ -30,6 +30,48 @@ fn surface(name: &str, shape: &str) -> String {
 const PLATE: &str = "rectangle = { corner = [4.44, 5.9, 2.0], u = [1, 0, 0], v = [0, 1, 0] }";
 const SPHERE: &str = "sphere = { centre = [4.94, 6.4, 2.0], radius = 0.5, face = \"outside\" }";
 
+/// Plates whose shadows few viewpoints of the one hidden element meet: what the tracer finds to 1e-5
+/// the model has within its bounds, and the verdict is that both agree.
+#[test]
+fn a_shadow_that_few_viewpoints_meet_is_not_forgotten() {
+    let plates = [
+        "corner = [6.391, 7.716, 1.355], u = [-0.1146, -0.0934, 0], v = [0.0934, -0.1146, 0]",
+        "corner = [3.376, 5.569, 2.753], u = [0.3516, -0.2002, 0.0], v = [0.2002, 0.3516, 0.0]",
+    ];
+    for plate in plates {
+        let text = format!(
+            "name = \"small\"\nunit = \"in\"\nmax_bounces = 3\n\
+             [laser]\npower = 0.005\nwavelength = 532e-9\nposition = [-20, 10, 15]\n\
+             [laser.spots]\nlayout = \"list\"\npoints = [[2.0, 1.5], [7.0, 4.0], [5.0, 7.0]]\n\
+             [camera]\nposition = [-20, 10, 15]\naperture_area = 0.05\npixels = [2, 2]\n\
+             view = {{ x = [3.25, 6.5], y = [2.75, 6.0] }}\n\
+             [[surface]]\nname = \"wall\"\nrole = \"relay\"\nmaterial = {{ lambertian = 0.8 }}\n\
+             rectangle = {{ corner = [-10, -10, 0], u = [30, 0, 0], v = [0, 30, 0] }}\n\
+             [[surface]]\nname = \"object\"\nrole = \"hidden\"\nelements = [1, 1]\n\
+             rectangle = {{ corner = [3, 11.35, 4.149], u = [4, 0, 0], v = [0, -2.828, 2.828] }}\n\
+             material = {{ lambertian = 0.9 }}\n\
+             [[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
+             rectangle = {{ {plate} }}\nmaterial = {{ lambertian = 0.0 }}\n"
+        );
+        let scene = Scene::from_toml("small", &text).unwrap();
+        let way = Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 20);
+        let traced = trace(&scene, way);
+        let measured = Measured::new(&traced.flux, &traced.stderr, Some(&traced.tails));
+        let against = Against {
+            kernel: Kernel::Physical,
+            integration: Integration::Quadrature,
+            occlusion: Occlusion::Considered,
+        };
+        let test = Test {
+            significance: 1e-3,
+            known: Certainty::new(Errors::Everywhere, Some(way.plan().budget.blocks)),
+        };
+        let found = validate(&scene, measured, against, test).unwrap();
+        assert!(traced.stderr.component_div(&traced.flux).amin() < 1e-5);
+        assert!(found.agreement.agrees, "{plate}: {:?}", found.agreement);
+    }
+}
+
 /// What the tracer, which knows nothing of shadows, makes of each occluder is what the model has to
 /// 1e-3, by quadrature and by elements; with the occluder left out of the model it is rejected.
 #[test]

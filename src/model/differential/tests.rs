@@ -206,6 +206,25 @@ fn rates_of_albedos_are_those_of_displaced_scenes() {
     all_within(&two_walls(), &names, |k| 0.2 * k as f64 - 0.3, 1e-6);
 }
 
+/// Wide spots across the seam of two walls, of which one takes what the other loses.
+#[test]
+fn rates_of_spots_across_two_walls_are_those_of_displaced_scenes() {
+    let painted = "paint = 0.7, roughness = 0.4";
+    let text = two_walls().text.replacen(painted, "lambertian = 0.3", 1);
+    let gaussian = text.replacen("\"disc\"", "\"gaussian\"", 1);
+    let names = ["spots.shift", "laser.spot_diameter", "laser.position"];
+    for text in [text, gaussian] {
+        let scene = Scene::from_toml("seam", &text).unwrap();
+        let scene = scene.with_spots_at(&[[4.0, 4.43], [6.0, 4.36]]).unwrap();
+        let parameters = parameters(&scene, &names);
+        let values = vec![0.003; parameters.len()];
+        let found = worst(&scene, &parameters, &values, Fineness::Areas(3));
+        for (p, off) in parameters.iter().zip(found) {
+            assert!(off < 1e-5, "{}: {off:e}", p.name);
+        }
+    }
+}
+
 /// A glossy wall, a curved wall, a surface that shines with a fall-off.
 #[test]
 fn rates_of_other_surfaces_are_those_of_displaced_scenes() {
