@@ -58,8 +58,8 @@ const DEAD: f64 = 0.05;
 const NEAR_AXIS: f64 = 0.1;
 
 impl Flat {
-    /// From averaged photographs of even radiance, less those `dark` of the same exposure time. With
-    /// a `lens` F is 1 on its axis: near it F over [`Lens::etendue`] is 1 on average, or over the
+    /// From averaged photographs of even radiance, less those `dark` of the same exposure time.
+    /// With a `lens` F is 1 on its axis: near it F over [`Lens::etendue`] is 1 on average, or over the
     /// whole photograph where the axis is not in it.
     ///
     /// # Errors
@@ -260,9 +260,9 @@ mod tests {
         );
     }
 
-    /// A flat field by its definition, cos⁴θ of the direction of each pixel, dimmed by 30 % beyond a
-    /// third of the diagonal (vignetting): with the camera matrix it is 1 on the axis, which lies far
-    /// off the middle; where the axis is outside it is what the matrix says.
+    /// A flat field by its definition, cos⁴θ of the direction of each pixel, dimmed by 30 % beyond
+    /// a third of the diagonal (vignetting): with the camera matrix it is 1 on the axis, which lies
+    /// far off the middle; where the axis is outside it is what the matrix says.
     #[test]
     fn a_flat_field_is_1_on_the_axis() {
         let size = [60usize, 40];

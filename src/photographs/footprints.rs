@@ -15,8 +15,8 @@
 //! With a camera matrix ρ is absolute. A pixel has e′ = A′·η/(fx·fy), A′ the area of the lens and η
 //! [`Lens::etendue`](super::Lens::etendue), or 1 after a flat field that is 1 on the axis. The
 //! scene's opening, parallel to the wall, is A_lens = A′/cosθ, θ between the axis and the wall's
-//! normal: on the axis both collect the same. So ρ = fx·fy·h²·|∂A/∂u|/(r⁴·η·cosθ), which is 1 on the
-//! axis of a camera that stands where the scene's does.
+//! normal: on the axis both collect the same. So ρ = fx·fy·h²·|∂A/∂u|/(r⁴·η·cosθ), which is 1 on
+//! the axis of a camera that stands where the scene's does.
 //!
 //! Without one e′ is taken as even, and ρ is known up to a factor, such that of a wall of even
 //! radiance the sum of Φ is that of the photograph's pixels in the view: Σ a·ρ = Σ a.

@@ -431,7 +431,7 @@ fn a_modelled_scene_comes_back_from_the_files_of_a_camera() {
                 format.file(&values),
             );
         }
-        // A lens at θ to the wall's normal whose area is cosθ of the scene's opening, for each count.
+        // For each count, of a lens at θ to the wall's normal with cosθ of the scene's opening.
         let cosine = -Camera::axes()[2][2];
         let watts = fine.camera.aperture_area * cosine / electrons / format.gain;
         for (error, folder) in [(0.3, "off"), (0.0, "exact")] {

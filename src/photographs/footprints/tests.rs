@@ -136,8 +136,8 @@ fn openings(camera: &Camera) -> Vec<f64> {
 
 /// An evenly glowing wall, photographed from where the scene's camera stands by a lens of area A
 /// whose axis lies off the middle of the view, at θ to the wall's normal: its pixels, θ′ off the
-/// axis, collect A·cos⁴θ′/(fx·fy), and what is imported is what an opening of A/cosθ parallel to the
-/// wall collects. So it is after a flat field that is 1 on the axis.
+/// axis, collect A·cos⁴θ′/(fx·fy), and what is imported is what an opening of A/cosθ parallel to
+/// the wall collects. So it is after a flat field that is 1 on the axis.
 #[test]
 fn a_tilted_lens_collects_what_its_opening_over_the_cosine_does() {
     let mut file = SceneFile::default();
