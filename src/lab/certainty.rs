@@ -191,6 +191,27 @@ impl Certainty {
         }
     }
 
+    /// The square of a deviate t over a standard error, 1 on average: of pooled errors over
+    /// [`PooledFrom::squares`], whatever the law of σ², else of the normal deviate as improbable.
+    pub(super) fn square(self, t: f64) -> f64 {
+        match self.pooled_from {
+            Some(own) => t * t / own.squares[0],
+            None => self.normal(t.abs()).powi(2),
+        }
+    }
+
+    /// Degrees of freedom of the sum of so many of these: of pooled errors by the variance of t².
+    pub(super) fn of_squares(self, count: f64) -> f64 {
+        match self.pooled_from {
+            Some(own) => {
+                let [square, fourth] = own.squares;
+                let each = 0.5 * (fourth / (square * square) - 1.0);
+                count / (each + 1.0 / freedom(own.replicates))
+            }
+            None => self.of_chi2(count),
+        }
+    }
+
     /// κ of counts.
     fn excess(self) -> f64 {
         self.counted.map_or(0.0, |own| own.excess)
@@ -219,11 +240,7 @@ impl Certainty {
     pub(super) fn by_noise(self, chi2: f64, dof: f64) -> f64 {
         let nu = self.freedom();
         let [mean, fewer] = match (self.pooled_from, self.replicates) {
-            (Some(own), _) => {
-                let [square, fourth] = own.squares;
-                let each = 0.5 * (fourth / (square * square) - 1.0);
-                [square, dof / (each + 1.0 / freedom(own.replicates))]
-            }
+            (Some(own), _) => [own.squares[0], self.of_squares(dof)],
             (None, Some(_)) if nu > 4.0 => [nu / (nu - 2.0), dof * (nu - 4.0) / (nu - 1.0)],
             (None, _) => [1.0, self.of_chi2(dof)],
         };

@@ -10,7 +10,8 @@
 //!
 //! has the mean N − ν if the picture is right, ν the degrees of freedom that it used up
 //! ([`Recovered::freedom_used`]). Where σ was estimated from K replicates z is the normal deviate
-//! of the same tail probability as Student's t of K − 1 degrees of freedom.
+//! of the same tail probability as Student's t of K − 1 degrees of freedom; of errors that were
+//! pooled z² is t² over what is expected of it ([`Certainty`]).
 //!
 //! Where no σ is known, two levels alone are held against it: what they leave over against what any
 //! numbers leave over ([`LeftOver`]).

@@ -29,13 +29,18 @@ pub fn inverted(
 ) -> Result<MatrixModel, ModelError> {
     let grids = element_grids(scene, elements)?;
     let count: usize = grids.iter().map(ElementGrid::len).sum();
-    let integrated = integration == Integration::Quadrature
-        && kernel == Kernel::Physical
-        && count <= MOST_INTEGRATED;
-    if integrated {
+    if integrated(kernel, count, integration) == Integration::Quadrature {
         MatrixModel::over_areas(scene, kernel, elements, occlusion, effort)
     } else {
         MatrixModel::with(scene, kernel, elements, occlusion)
+    }
+}
+
+/// How so many elements are integrated where this is asked for ([`inverted`]).
+pub(super) fn integrated(kernel: Kernel, count: usize, asked: Integration) -> Integration {
+    match kernel {
+        Kernel::Physical if count <= MOST_INTEGRATED => asked,
+        _ => Integration::Centres,
     }
 }
 

@@ -25,7 +25,14 @@ pub fn unmodelled(scene: &Scene) -> Vec<String> {
                     | Warning::PixelsBlocked(..)
             )
         })
-        .map(ToString::to_string)
+        .map(|warning| match warning {
+            Warning::BeamBlocked(spots, by) => format!(
+                "light that lands on `{by}`, which stops the beam to {} of {} spots: these are dark in the model",
+                spots.len(),
+                scene.laser.spots.len()
+            ),
+            _ => warning.to_string(),
+        })
         .collect();
     found.extend(from_wall_to_wall(scene));
     let occluders = scene.surfaces.iter().filter(|s| s.role == Role::Occluder);
@@ -131,4 +138,38 @@ fn lights(
 fn wall_at(scene: &Scene, at: [f64; 2]) -> Option<(ShapeId, Interaction)> {
     let seen = scene.seen_through(scene.camera.view.at(at).position);
     seen.filter(|(shape, _)| scene.surfaces[*shape as usize].role == Role::Relay)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Kernel, MatrixModel};
+
+    /// A plate nine tenths of the way to the first spot: as many spots as it stops the beam to are
+    /// dark in the model, and it is the light on the plate that the model is said not to have.
+    #[test]
+    fn spots_whose_beam_is_stopped_are_dark_in_the_model() {
+        let bench = Scene::load("bench").unwrap();
+        let from = bench.laser.position;
+        let at = from.lerp(bench.laser.spots[0].target.position, 0.9);
+        let plate = format!(
+            "\n[[surface]]\nname = \"plate\"\nrole = \"occluder\"\nsides = \"two\"\n\
+             rectangle = {{ corner = [{}, {}, {}], u = [0.2, 0, 0], v = [0, 0.2, 0] }}\n\
+             material = {{ lambertian = 0.0 }}\n",
+            at.x - 0.1,
+            at.y - 0.1,
+            at.z
+        );
+        let scene = Scene::from_toml("stopped", &(bench.text + &plate)).unwrap();
+        let model = MatrixModel::new(&scene, Kernel::Physical, Some([2, 2])).unwrap();
+        let phi = model.phi();
+        let dark = phi.column_iter().filter(|c| c.amax() == 0.0).count();
+        assert!((1..10).contains(&dark), "{dark}");
+        let told = unmodelled(&scene);
+        let due = format!(
+            "light that lands on `plate`, which stops the beam to {dark} of {} spots: these are dark in the model",
+            phi.ncols()
+        );
+        assert!(told.contains(&due), "{told:?}");
+    }
 }

@@ -49,7 +49,12 @@ impl Columns {
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
         let flat = match &shots.flat {
             None => None,
-            Some((shot, dark)) => Some(Flat::new(shot, dark.as_ref(), noise)?),
+            Some((shot, dark)) => Some(Flat::new(
+                shot,
+                dark.as_ref(),
+                noise,
+                placing.mapping.lens(),
+            )?),
         };
         let mut dead = shots.dead.clone();
         if let Some(flat) = &flat {

@@ -1,6 +1,7 @@
 //! From an averaged photograph to flux: dark frames, flat field, exposure time.
 
 use super::error::{PhotographError, refused};
+use super::lens::Lens;
 use super::noise::CameraNoise;
 use super::plane::{Averaged, same_size};
 
@@ -19,11 +20,11 @@ pub struct Correction<'a> {
     pub exposure: f64,
 }
 
-/// A photograph of even radiance, relative to its mean.
+/// A photograph of even radiance: 1 on the optical axis where that is known, else on average.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flat {
     size: [usize; 2],
-    /// F: 1 on average.
+    /// F.
     pub level: Vec<f64>,
     /// Relative variance of F.
     pub variance: Vec<f64>,
@@ -52,9 +53,14 @@ pub struct Corrected {
 
 /// Part of the mean below which a pixel of a flat field counts as dead.
 const DEAD: f64 = 0.05;
+/// Distance from the principal point within which a flat field tells what it is on the axis, of the
+/// photograph's diagonal.
+const NEAR_AXIS: f64 = 0.1;
 
 impl Flat {
     /// From averaged photographs of even radiance, less those `dark` of the same exposure time.
+    /// With a `lens` F is 1 on its axis: near it F over [`Lens::etendue`] is 1 on average, or over the
+    /// whole photograph where the axis is not in it.
     ///
     /// # Errors
     /// [`PhotographError::Refused`] for one without light.
@@ -62,6 +68,7 @@ impl Flat {
         shot: &Averaged,
         dark: Option<&Averaged>,
         noise: Option<CameraNoise>,
+        lens: Option<&Lens>,
     ) -> Result<Self, PhotographError> {
         let correction = Correction {
             dark,
@@ -71,9 +78,21 @@ impl Flat {
             exposure: 1.0,
         };
         let Corrected { flux, variance, .. } = correction.apply("the flat field", shot)?;
-        let good = |k: &usize| !shot.saturated[*k];
-        let lit: Vec<usize> = (0..flux.len()).filter(good).collect();
-        let mean = lit.iter().map(|k| flux[*k]).sum::<f64>() / lit.len().max(1) as f64;
+        let at = |k: usize| [k % shot.size[0], k / shot.size[0]].map(|x| x as f64);
+        let own = |k: usize| lens.map_or(Some(1.0), |lens| lens.etendue(at(k)));
+        let known = |k: usize| Some((k, own(k)?)).filter(|_| !shot.saturated[k]);
+        let lit: Vec<(usize, f64)> = (0..flux.len()).filter_map(known).collect();
+        let diagonal = libm::hypot(shot.size[0] as f64, shot.size[1] as f64);
+        let is_near = |lens: &Lens, [u, v]: [f64; 2]| {
+            libm::hypot(u - lens.cx, v - lens.cy) <= NEAR_AXIS * diagonal
+        };
+        let near = |(k, _): &&(usize, f64)| lens.is_some_and(|lens| is_near(lens, at(*k)));
+        let mut near: Vec<(usize, f64)> = lit.iter().filter(near).copied().collect();
+        if near.is_empty() {
+            near = lit;
+        }
+        let mean = near.iter().map(|(k, _)| flux[*k]).sum::<f64>()
+            / near.iter().map(|(_, own)| own).sum::<f64>();
         if mean <= 0.0 || !mean.is_finite() {
             return Err(refused(
                 "the flat field has no light above its dark frames",
@@ -204,7 +223,7 @@ mod tests {
     fn flux_and_variance_are_those_of_the_law() {
         let noise = Some(CameraNoise::new(0.5, 3.0).unwrap());
         let (dark, flat_dark) = (shot(&[10.0, 20.0, 10.0]), shot(&[5.0; 3]));
-        let flat = Flat::new(&shot(&[105.0, 305.0, 5.0]), Some(&flat_dark), noise).unwrap();
+        let flat = Flat::new(&shot(&[105.0, 305.0, 5.0]), Some(&flat_dark), noise, None).unwrap();
         assert_eq!(flat.unusable, [false, false, true]);
         // 100, 300 and 0: the mean is 400/3.
         assert!((flat.level[0] - 0.75).abs() < 1e-12 && (flat.level[1] - 2.25).abs() < 1e-12);
@@ -239,6 +258,47 @@ mod tests {
             "{}",
             found.common
         );
+    }
+
+    /// A flat field by its definition, cos⁴θ of the direction of each pixel, dimmed by 30 % beyond
+    /// a third of the diagonal (vignetting): with the camera matrix it is 1 on the axis, which lies
+    /// far off the middle; where the axis is outside it is what the matrix says.
+    #[test]
+    fn a_flat_field_is_1_on_the_axis() {
+        let size = [60usize, 40];
+        let of = |[cx, cy]: [f64; 2], dimmed: f64| {
+            let [fx, fy] = [55.0, 50.0];
+            let lens = Lens {
+                fx,
+                fy,
+                cx,
+                cy,
+                k1: 0.0,
+                k2: 0.0,
+                p1: 0.0,
+                p2: 0.0,
+                k3: 0.0,
+            };
+            let light = |k: usize| {
+                let off = [(k % size[0]) as f64 - cx, (k / size[0]) as f64 - cy];
+                let tan2 = (off[0] / fx).powi(2) + (off[1] / fy).powi(2);
+                let far = libm::hypot(off[0], off[1]) > libm::hypot(60.0, 40.0) / 3.0;
+                700.0 * (1.0 + tan2).powi(-2) * if far { dimmed } else { 1.0 }
+            };
+            let mut field = shot(&(0..2400).map(light).collect::<Vec<_>>());
+            field.size = size;
+            let found = Flat::new(&field, None, None, Some(&lens)).unwrap();
+            (0..2400).for_each(|k| {
+                let due = light(k) / 700.0;
+                assert!(
+                    (found.level[k] / due - 1.0).abs() < 1e-12,
+                    "{k}: {}",
+                    found.level[k]
+                );
+            });
+        };
+        of([14.0, 30.0], 0.7);
+        of([-30.0, 70.0], 1.0);
     }
 
     /// Dark frames of 0.13 counts of noise, whose mean over offsets from 0 to 1 is off by rounding:
@@ -340,6 +400,6 @@ mod tests {
             ..plain
         };
         assert!(never.apply("a", &shot(&[1.0])).is_err());
-        assert!(Flat::new(&dark, Some(&dark), None).is_err());
+        assert!(Flat::new(&dark, Some(&dark), None, None).is_err());
     }
 }

@@ -10,11 +10,16 @@
 //!
 //! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, x_pq its
 //! centroid, x_q the middle of q, and ρ the ratio of the étendues at x_pq. A photograph without
-//! marks is that of the scene's own camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to
-//! a factor (as the aperture of a camera is), such that of a wall of even radiance the sum of Φ is
-//! that of the photograph's pixels in the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of
-//! even radiance; with a camera matrix it is [`Lens::etendue`](super::Lens::etendue); else it is
-//! taken as even.
+//! marks is that of the scene's own camera: ρ = 1, and Φ is a sum of pixels.
+//!
+//! With a camera matrix ρ is absolute. A pixel has e′ = A′·η/(fx·fy), A′ the area of the lens and η
+//! [`Lens::etendue`](super::Lens::etendue), or 1 after a flat field that is 1 on the axis. The
+//! scene's opening, parallel to the wall, is A_lens = A′/cosθ, θ between the axis and the wall's
+//! normal: on the axis both collect the same. So ρ = fx·fy·h²·|∂A/∂u|/(r⁴·η·cosθ), which is 1 on
+//! the axis of a camera that stands where the scene's does.
+//!
+//! Without one e′ is taken as even, and ρ is known up to a factor, such that of a wall of even
+//! radiance the sum of Φ is that of the photograph's pixels in the view: Σ a·ρ = Σ a.
 //!
 //! The footprint is a polygon in the photograph, cut exactly at the borders of pixels. With a lens
 //! each of its edges is drawn by eight chords: an edge of n pixels whose curve leaves the chord by
@@ -105,7 +110,7 @@ impl Footprints {
         }
         let unit = match evenness {
             Evenness::Same => 1.0,
-            _ => area / weighed,
+            _ => absolute(camera, mapping).unwrap_or(area / weighed),
         };
         let weights = |pieces: &Pieces| weights(pieces, size, unit);
         let rows = rows.iter().map(weights).collect();
@@ -288,6 +293,16 @@ fn ratio(camera: &Camera, mapping: &Mapping, evenness: Evenness, at: [f64; 2]) -
     let r2 = (point - camera.position).length_squared();
     // h² is the same for all pixels.
     Some([area / (r2 * r2) / own, own])
+}
+
+/// What makes ρ absolute, with the area of the view for view coordinates; `None` without a camera
+/// matrix, or where the axis never meets the wall.
+fn absolute(camera: &Camera, mapping: &Mapping) -> Option<f64> {
+    let (lens, pose) = (mapping.lens()?, mapping.pose()?);
+    let view = &camera.view;
+    let height = view.normal().dot(camera.position - view.corner());
+    let area = view.u().cross(view.v()).length();
+    (pose.cosine > 0.0).then(|| lens.fx * lens.fy * height * height * area / pose.cosine)
 }
 
 /// The part of a polygon between two values of coordinate `axis` (Sutherland and Hodgman, *CACM*

@@ -15,8 +15,8 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, colourless, copied, flickers, little_left, mirrored, misread, misstated,
-    no_light, outside, roughly, rounded, shared, stretched, unsaid,
+    bent, by_own_light, colourless, copied, elsewhere, flickers, little_left, mirrored, misread,
+    misstated, no_light, outside, roughly, rounded, shared, stretched, unsaid,
 };
 use crate::scene::{Scene, SceneError};
 
@@ -124,6 +124,8 @@ pub fn import(
         warnings.extend(mirrored(&placing.mapping, &scene.camera));
         warnings.extend(outside(&placing.marks, shots.size));
         warnings.extend(misread(fitted, &placing.marks, set.camera));
+        let scaled = set.watts.and(elsewhere(&placing.mapping, &scene.camera));
+        warnings.extend(scaled);
     } else {
         let extent = set.crop.map(|c| [c.width, c.height]);
         let extent = extent.unwrap_or(shots.size.map(|n| n as f64));

@@ -13,6 +13,7 @@ use normalised::{Frame, times};
 
 use super::error::{PhotographError, refused};
 use super::lens::Lens;
+use crate::geometry::DVec3;
 use crate::num::linalg::{Tolerance, least_squares, svd};
 
 /// A marked point of the wall.
@@ -30,6 +31,15 @@ pub struct Mapping {
     /// Rows of H.
     h: [[f64; 3]; 3],
     lens: Option<Lens>,
+}
+
+/// How a camera of known matrix looks at the wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pose {
+    /// cos θ between its axis and the wall's normal; 0 or less where the axis never meets the wall.
+    pub cosine: f64,
+    /// Distance from the wall's plane, for a view of unit area.
+    pub height: f64,
 }
 
 /// A mapping with what its marks say of it.
@@ -185,6 +195,22 @@ impl Mapping {
         let w = h6 * at[0] + h7 * at[1] + h8;
         // ∂(u, v)/∂(a, b) = determinant/w².
         (w > 0.0).then(|| (at, straightened * w * w / determinant.abs()))
+    }
+
+    /// How the camera looks at the wall, where its matrix K is known: the columns of K⁻¹H are
+    /// λ·(u, v, c) in its axes, u and v the sides of the view and c its corner, seen from the eye.
+    pub(super) fn pose(&self) -> Option<Pose> {
+        let lens = self.lens?;
+        let [p, q, c] = [0, 1, 2].map(|k| {
+            let [u, v, w] = self.h.map(|row| row[k]);
+            DVec3::new((u - lens.cx * w) / lens.fx, (v - lens.cy * w) / lens.fy, w)
+        });
+        let normal = p.cross(q);
+        let (area, away) = (normal.length(), normal.dot(c));
+        Some(Pose {
+            cosine: normal.z * away.signum() / area,
+            height: away.abs() / libm::pow(area, 1.5),
+        })
     }
 
     /// The lens, if one is known.

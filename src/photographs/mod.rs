@@ -5,8 +5,8 @@
 //! > y = (R⁻¹(s) − d)/(F·t·g)
 //!
 //! with the response R ([`Response`]), the dark frames' mean light d of the same exposure time t,
-//! the flat field F of mean 1, and the gain g of the photograph ([`Correction`]). The pixels of the
-//! scene's camera gather what falls into their footprints, with the ratio of the two cameras'
+//! the flat field F, 1 on the axis or on average, and the gain g of the photograph
+//! ([`Correction`]). The pixels of the scene's camera gather what falls into their footprints, with the ratio of the two cameras'
 //! étendues ([`Footprints`]); where the wall is in the photograph is known from marked points
 //! ([`Mapping`]) or a crop.
 //!

@@ -38,6 +38,13 @@ impl Placing {
             (None, Some(c)) => Mapping::upright([c.x, c.y], [c.width, c.height]),
             (None, None) => Mapping::upright([0.0; 2], size.map(|n| n as f64)),
         };
+        if set.watts.is_some() && mapping.pose().is_some_and(|pose| pose.cosine <= 0.0) {
+            return Err(refused(
+                "the camera's axis never meets the wall, so that no opening parallel to the wall collects what its lens does, \
+                 and `watts` has no meaning",
+                "check `camera` and the marks, or leave `watts` out and recover with --free-scale",
+            ));
+        }
         let evenness = match (&fitted, set.camera, &set.flat) {
             (None, _, None) => Evenness::Same,
             (Some(_), Some(_), None) => Evenness::ByLens,

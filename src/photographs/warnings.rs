@@ -20,6 +20,8 @@ const MISREAD: f64 = 1.0;
 const ODD: f64 = 0.3;
 /// How far from square the pixels of a view without marks may be.
 const STRETCH: f64 = 0.02;
+/// Part by which a camera's distance from the wall may be off before its watts are.
+const ELSEWHERE: f64 = 0.05;
 /// Part of a standard error from which on what all entries share is told.
 const ROUNDED: f64 = 0.5;
 /// Errors that are larger by more than this are others than stated.
@@ -213,12 +215,32 @@ pub(super) fn unsaid(set: &Set, placing: &Placing) -> Vec<String> {
             "four marks leave nothing to check the mapping by; give more",
         ),
         (
+            set.watts.is_some() && placing.fitted.is_some() && set.camera.is_none(),
+            "without a camera matrix nothing tells where the axis is, and `watts` is taken to hold on average over the view: right where the axis goes through its middle; give `camera`",
+        ),
+        (
             set.watts.is_none(),
             "no factor to watts is known (`watts`): fluxes have an arbitrary unit; recover with --free-scale",
         ),
     ];
     let said = all.into_iter().filter(|(holds, _)| *holds);
     said.map(|(_, words)| words.to_owned()).collect()
+}
+
+/// That camera matrix and marks have the camera at another distance from the wall than the scene.
+pub(super) fn elsewhere(mapping: &Mapping, camera: &Camera) -> Option<String> {
+    let view = &camera.view;
+    let unit = view.u().cross(view.v()).length().sqrt();
+    let own = unit * mapping.pose()?.height;
+    let due = view.normal().dot(camera.position - view.corner()).abs();
+    (libm::log(own / due).abs() > libm::log(1.0 + ELSEWHERE)).then(|| {
+        format!(
+            "the camera matrix and the marks have the camera {} from the wall, camera.position {}: if both are one camera, \
+             fx and fy are not of photographs of this size, or camera.position is off; `watts` rests on both",
+            figure(own, 3),
+            figure(due, 3)
+        )
+    })
 }
 
 /// That a view of these sides fills a rectangle of `extent`, px, of another shape.

@@ -113,7 +113,7 @@ impl fmt::Display for Warning {
             ),
             Self::ElementsAcrossCells(name) => write!(
                 f,
-                "elements of `{name}` straddle the edges of its texture: the model takes their mean albedo"
+                "elements of `{name}` straddle the edges of its texture: by centres the model takes their mean albedo, by quadrature that of each part; a picture has one for each element"
             ),
             Self::SpotsOverhang(spots) => {
                 let spots = Spots(spots);

@@ -186,11 +186,10 @@ impl Wall {
         [weight(0, 0), weight(1, 0), weight(0, 1), weight(1, 1)]
     }
 
-    /// Light into every pixel of the camera for every spot; and that of an evenly bright view.
-    fn photographed(&self) -> (Matrix, f64) {
+    /// Light into every pixel of the camera, with an aperture of 1, for every spot.
+    fn photographed(&self) -> Matrix {
         let pixels = SIZE[0] * SIZE[1];
         let mut light = Matrix::zeros(pixels, self.radiance.ncols());
-        let mut even = 0.0;
         let step = 1.0 / SUB as f64;
         for q in 0..pixels {
             for k in 0..SUB * SUB {
@@ -203,16 +202,9 @@ impl Wall {
                         light[(q, l)] += etendue * weight * self.radiance[(fine, l)];
                     }
                 }
-                let inside = |k: usize| {
-                    let t = (point[k] - self.view[0][k]) / self.view[1][k];
-                    (0.0..1.0).contains(&t)
-                };
-                if inside(0) && inside(1) {
-                    even += etendue;
-                }
             }
         }
-        (light, even)
+        light
     }
 }
 
@@ -383,7 +375,7 @@ fn a_modelled_scene_comes_back_from_the_files_of_a_camera() {
             .sum()
     });
     let wall = Wall::of(&fine, &phi);
-    let (light, even) = wall.photographed();
+    let light = wall.photographed();
     // 300 electrons in the brightest pixel.
     let electrons = 300.0 / light.max();
     let w = Workspace::new();
@@ -439,9 +431,9 @@ fn a_modelled_scene_comes_back_from_the_files_of_a_camera() {
                 format.file(&values),
             );
         }
-        // What an evenly bright view puts into the scene's camera, for each count in the
-        // photograph.
-        let watts = etendues(&fine).iter().sum::<f64>() / even / electrons / format.gain;
+        // For each count, of a lens at θ to the wall's normal with cosθ of the scene's opening.
+        let cosine = -Camera::axes()[2][2];
+        let watts = fine.camera.aperture_area * cosine / electrons / format.gain;
         for (error, folder) in [(0.3, "off"), (0.0, "exact")] {
             let set = format!(
                 "scene = \"scene.toml\"\nframes = \"{name}/photo-*.{0}\"\ndark = \"{name}/dark-*.{0}\"\nrepeats = {REPEATS}\ngamma = {1}\nwatts = {watts:e}\nexposure = 1\n\

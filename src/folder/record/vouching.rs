@@ -164,6 +164,7 @@ fn changed(path: &Path, what: &str) -> FolderError {
     );
     FolderError::new(
         cause,
-        "restore it, or give data of your own (--phi, --left-out); the same render into the same folder makes it again",
+        "restore it, or give data of your own (--phi, --left-out); the same render into the same folder makes it again, and \
+         `phicam stack` phi.npy and phi.stderr.npy, of the frames, once both are removed",
     )
 }

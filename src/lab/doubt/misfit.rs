@@ -127,17 +127,29 @@ fn contradiction(best: &Attainable) -> String {
             significant(best.brightness, 3)
         );
     }
+    let chi2 = |fit: &Fit| fit.chi2_per_dof * fit.dof;
     let any = match &best.any {
         Some(any) if any.fits => {
             "reflectances below 0 or above 1 could, which no surface has".to_owned()
         }
+        // Weights other than those of χ²: of entries without an error, or by pixel and spot.
+        Some(any) if chi2(any) > chi2(&best.possible) => {
+            "it is not known whether other numbers do, as what fits best by the weights does not by the test".to_owned()
+        }
         Some(any) => format!("no numbers at all do ({})", self::told(any)),
         None => "it is not known whether other numbers do".to_owned(),
+    };
+    let exact = match best.possible.left_out {
+        0 => "",
+        _ => {
+            " the entries whose standard error is 0, if any: they count for the picture and no test sees them (leave \
+              them out, --left-out, or give their errors);"
+        }
     };
     format!(
         "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
          ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
-         small. Check geometry, order and orientation of the frames, unit and --stderr; more \
+         small. Check{exact} geometry, order and orientation of the frames, unit and --stderr; more \
          --elements where they are coarse; what stands in the way, in the scene; \
          --frame-constant, --background or --occluder-light for other light; --integration centres \
          where elements were taken at their centres, as `phicam model` does"

@@ -36,8 +36,8 @@ pub struct Residuals {
     pub(super) sums: Vec<f64>,
     pub(super) entries: usize,
     pub(super) left_out: usize,
-    /// Pixel, spot and |z| of those far off.
-    far: Vec<(usize, usize, f64)>,
+    /// Pixel, spot, |z| and square of those far off.
+    far: Vec<(usize, usize, f64, f64)>,
     /// Σ κ of counts.
     excess: f64,
     /// z of the last row, and Σ z z′ over rows that follow each other: pixels side by side.
@@ -63,14 +63,15 @@ impl Residuals {
                 let stderr = certainty.stderr(seen[at], stderr[at]);
                 self.excess += certainty.counted.map_or(0.0, |own| own.excess_of(stderr));
                 let t = (phi[at] - seen[at]) / stderr;
-                let z = certainty.normal(t.abs());
-                let signed = z.copysign(t);
-                let far = certainty.of_counts(signed, stderr).abs();
+                let z = certainty.normal(t.abs()).copysign(t);
+                let far = certainty.of_counts(z, stderr).abs();
+                let square = certainty.square(t);
+                let signed = square.sqrt().copysign(t);
                 self.beside += signed * self.last[l];
                 self.last[l] = signed;
-                sum += z * z;
+                sum += square;
                 if far > FAR && self.far.len() <= MOST_FAR {
-                    self.far.push((self.sums.len(), l, far));
+                    self.far.push((self.sums.len(), l, far, square));
                 }
             }
             self.sums.push(sum);
@@ -93,7 +94,7 @@ impl Residuals {
             ..certainty
         };
         let dof = match certainty.errors {
-            Errors::Independent => certainty.of_chi2(left),
+            Errors::Independent => certainty.of_squares(left),
             Errors::WithinRows => freedom_of_rows(&self.sums, self.entries) * left / entries,
             Errors::Everywhere => 1.0,
         };
@@ -122,15 +123,15 @@ impl Residuals {
     /// not fit without them.
     fn outlier(&self, left: f64, certainty: Certainty) -> Option<Outlier> {
         let limit = sidak_threshold(FIT_LEVEL, self.entries as u64).max(LEAST);
-        let beyond = self.far.iter().filter(|(_, _, z)| *z > limit);
-        let beyond: Vec<&(usize, usize, f64)> = beyond.collect();
-        let squares: f64 = beyond.iter().map(|(_, _, z)| z * z).sum();
+        let beyond = self.far.iter().filter(|(_, _, z, _)| *z > limit);
+        let beyond: Vec<_> = beyond.collect();
+        let squares: f64 = beyond.iter().map(|(_, _, _, square)| square).sum();
         let others = left - beyond.len() as f64;
         if self.far.len() > MOST_FAR || others < 0.5 {
             return None;
         }
         let rest = (self.sums.iter().sum::<f64>() - squares) / others;
-        let dof = certainty.of_chi2(others);
+        let dof = certainty.of_squares(others);
         let farthest = beyond.iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
         (chi_square_sf(rest * dof, dof) >= FIT_LEVEL).then_some(Outlier {
             pixel: farthest.0,

@@ -108,6 +108,7 @@ mod tests {
             picture: Picture::Board(2),
             elements: 8,
             method: method.to_owned(),
+            integration: "centres".to_owned(),
             mtf_of_truth: [1.0; 2],
             points: vec![point(1e-4, errors[0]), point(1e-2, errors[1])],
             lost_raw: [Lost::Unknown; LIMITS.len()],

@@ -10,6 +10,7 @@ use super::trial::Trial;
 use crate::lab::Measures;
 use crate::lab::ensemble::{Draws, MOST_SPREAD, Spread};
 use crate::lab::loss;
+use crate::lab::problem::integrated;
 use crate::num::statistics::student_threshold;
 use crate::recovery::Method;
 
@@ -136,6 +137,8 @@ pub struct NoiseCurve {
     pub elements: usize,
     /// The method.
     pub method: String,
+    /// How photographs and model integrate: `centres` or `quadrature`.
+    pub integration: String,
     /// From quiet to loud.
     pub points: Vec<Point>,
     /// Raw and normalized MTF of the picture itself, which a perfect recovery has: 1 of a board of
@@ -214,6 +217,9 @@ impl NoiseCurve {
             picture,
             elements,
             method: method.name().to_owned(),
+            integration: integrated(plan.kernel, elements * elements, plan.integration)
+                .name()
+                .to_owned(),
             lost_raw: lost(&raw),
             lost_normalized: lost(&normalized),
             held: held(&raw, LIMITS[0], &plan.axis),

@@ -8,6 +8,7 @@ use super::picture::Picture;
 use super::study::NoiseStudy;
 use crate::lab::ensemble::Spread;
 use crate::lab::finding::{Axis, Curve, Describe, Figure, Finding, Mark, Plot};
+use crate::lab::validation::Integration;
 use crate::num::digits::figure;
 
 /// The published method, named beside the best one.
@@ -42,6 +43,7 @@ impl Describe for NoiseStudy {
             sentence: self.sentence(),
             notes: self
                 .unstudied()
+                .chain([self.integrated()])
                 .chain(self.curves.iter().filter_map(failures))
                 .collect(),
             tables,
@@ -58,6 +60,31 @@ impl NoiseStudy {
         let sensor = self.axis.label().sensor;
         let sensor = sensor.map_or(String::new(), |s| format!(", sensor {s}"));
         format!("How much noise each recovery bears: {}{sensor}", self.scene)
+    }
+
+    /// How photographs and model integrate.
+    fn integrated(&self) -> String {
+        let centres = Integration::Centres.name();
+        let mut elements: Vec<usize> = self.curves.iter().map(|c| c.elements).collect();
+        elements.dedup();
+        let by_centres = |e: &usize| {
+            let of = |c: &NoiseCurve| c.elements == *e && c.integration == centres;
+            self.curves.iter().any(of)
+        };
+        let (mut at, rest): (Vec<usize>, Vec<usize>) = elements.into_iter().partition(by_centres);
+        at.sort_unstable();
+        at.dedup();
+        let sides: Vec<String> = at.iter().map(|e| format!("{e} × {e}")).collect();
+        match (at.is_empty(), rest.is_empty()) {
+            (true, _) => "Photographs and model are integrated over elements, footprints and spots, as recover does it. Methods that work \
+                          pixel by pixel invert C·D, which such light is not quite: this they lose without noise."
+                .to_owned(),
+            (_, all) => format!(
+                "Photographs and model take {}elements, pixels and spots at their centres. The light of a bench is the integral over \
+                 them, which recover inverts: errors and bound of few elements differ from these by tens of percent.",
+                if all { String::new() } else { format!("{} ", sides.join(", ")) }
+            ),
+        }
     }
 
     /// That the scene's own picture was left out, and which boards have no place.

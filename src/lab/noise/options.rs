@@ -7,6 +7,7 @@ use super::tasks::NoiseTasks;
 use crate::lab::error::StudyError;
 use crate::lab::options::{Opt, OptionError, Values};
 use crate::lab::registered::{Registered, prepared};
+use crate::lab::validation::Integration;
 use crate::model::Kernel;
 use crate::scene::{Scene, Spread};
 
@@ -45,6 +46,18 @@ pub(in crate::lab) const STUDY: Registered = Registered {
             ],
         )
         .or("physical"),
+        Opt::choice(
+            "integration",
+            "How both integrate",
+            &[
+                ("centres", "Elements, pixels and spots at their centres"),
+                (
+                    "quadrature",
+                    "Over elements, footprints and spots, as recover does; of more than 1024 elements and of the published kernel at their centres",
+                ),
+            ],
+        )
+        .or("quadrature"),
         Opt::choice(
             "axis",
             "What is varied",
@@ -127,6 +140,10 @@ impl NoiseTasks {
             kernel: match values.one::<String>("kernel")?.as_str() {
                 "published" => Kernel::Published,
                 _ => Kernel::Physical,
+            },
+            integration: match values.one::<String>("integration")?.as_str() {
+                "centres" => Integration::Centres,
+                _ => Integration::Quadrature,
             },
             axis,
             levels,

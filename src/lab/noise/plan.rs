@@ -3,7 +3,9 @@
 use super::axis::NoiseAxis;
 use super::picture::Picture;
 use crate::lab::error::LabError;
-use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::lab::problem::inverted;
+use crate::lab::validation::Integration;
+use crate::model::{Effort, Kernel, MatrixModel, ModelError, Occlusion};
 use crate::recovery::Method;
 use crate::scene::Scene;
 
@@ -18,6 +20,8 @@ pub struct NoisePlan {
     pub methods: Vec<Method>,
     /// Kernel of the data and of the inversion.
     pub kernel: Kernel,
+    /// How both integrate.
+    pub integration: Integration,
     /// What is varied.
     pub axis: NoiseAxis,
     /// Its levels, from quiet to loud ([`NoiseAxis::quiet_first`]).
@@ -33,11 +37,12 @@ impl NoisePlan {
     /// sensor.
     pub fn study(&self, scene: &Scene) -> String {
         format!(
-            "phicam {} study noise of scene {} ({}), {} kernel, {}",
+            "phicam {} study noise of scene {} ({}), {} kernel, {}, {}",
             env!("CARGO_PKG_VERSION"),
             scene.name.replace(['\n', '\r'], " "),
             scene.hash,
             self.kernel.name(),
+            self.integration.name(),
             self.axis.identity()
         )
     }
@@ -78,7 +83,13 @@ impl NoisePlan {
         scene: &Scene,
         (picture, elements): (Picture, usize),
     ) -> Result<MatrixModel, ModelError> {
-        MatrixModel::new(&picture.on(scene), self.kernel, Some([elements; 2]))
+        inverted(
+            &picture.on(scene),
+            self.kernel,
+            Some([elements; 2]),
+            Occlusion::Considered,
+            (self.integration, Effort::USUAL),
+        )
     }
 
     /// Refuses exposures that saturate whatever the noise.

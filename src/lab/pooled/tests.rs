@@ -218,6 +218,30 @@ fn right_light_is_as_improbable_as_is_said() {
     }
 }
 
+/// The fit of the truth to even noise, errors from 2 photographs of 80 pixels and 25 spots: of 200
+/// draws χ²/dof is 1 on average, to five of its errors of √(2/2000)·1.5/√200, and so many P are
+/// below 5 % as that says, within the binomial 99.9 %. By Student's t of the fewest degrees of
+/// freedom that are sure, χ²/dof was 0.87 and no P below a half.
+#[test]
+fn a_right_picture_fits_as_improbably_as_is_said() {
+    let exact = Matrix::from_element(80, 25, 5.0);
+    let sigma = Matrix::from_element(80, 25, 0.01);
+    let draws = 200;
+    let (mut mean, mut few) = (0.0, 0);
+    for seed in 0..draws {
+        let [phi, stderr] = repeated(&exact, &sigma, 2, 500 + seed);
+        let pooled = Pooled::of(&stderr, from(2), None).unwrap();
+        let mut residuals = Residuals::default();
+        residuals.add(&phi, &exact, &pooled.stderr, pooled.certainty);
+        let fit = residuals.fit(0.0, pooled.certainty).unwrap();
+        mean += fit.chi2_per_dof / draws as f64;
+        few += u64::from(fit.p < 0.05);
+    }
+    assert!((mean - 1.0).abs() < 0.017, "{mean}");
+    let [least, most] = binomial_interval(draws, 0.05, 0.999);
+    assert!((least..=most).contains(&few), "{few}");
+}
+
 /// What is fitted with pooled weights w, as if these were known, has the variance Σ w²σ² over (Σ
 /// w)² and states 1/Σ w: how many times too small that error is is said, without σ, to 1 % in the
 /// mean of 300 draws. σ² is a product, and scatters about it by a factor of 3; from 2, 3 and 8

@@ -1,6 +1,7 @@
 use super::super::lens::Lens;
 use super::super::mapping::Mark;
 use super::*;
+use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
@@ -60,7 +61,7 @@ fn what_reaches_beyond_the_photograph_is_outside() {
 
 /// An evenly glowing wall, photographed by a camera that stands elsewhere, with distortion: its
 /// pixels have the étendue cos⁴θ·(area of the undistorted pixel), and what is imported is that of
-/// the scene's camera, ∫ h²/r⁴ dA by quadrature, to one factor.
+/// the scene's camera, ∫ h²/r⁴ dA by quadrature, also as a whole: the axis is normal to the wall.
 #[test]
 fn the_ratio_of_etendues_is_that_of_the_cameras() {
     let camera = camera();
@@ -107,9 +108,18 @@ fn the_ratio_of_etendues_is_that_of_the_cameras() {
         .collect();
     let found = Footprints::new(&camera, &mapping, size, Evenness::ByLens).unwrap();
     let flux = found.gathered(&counts);
+    for (p, (found, due)) in flux.iter().zip(openings(&camera)).enumerate() {
+        assert!((found / due - 1.0).abs() < 2e-4, "{p}: {}", found / due);
+    }
+}
+
+/// What an opening of unit area, parallel to the wall, collects of even radiance 1 in each pixel of
+/// the scene's camera: ∫ h²/r⁴ dA by quadrature.
+fn openings(camera: &Camera) -> Vec<f64> {
+    let view = &camera.view;
     let rule = Rule::gauss_legendre(8);
     let height = view.normal().dot(camera.position - view.corner()).abs();
-    let due: Vec<f64> = (0..48)
+    (0..48)
         .map(|p| {
             let footprint = camera.footprint(p);
             let mut sum = 0.0;
@@ -121,19 +131,74 @@ fn the_ratio_of_etendues_is_that_of_the_cameras() {
             }
             sum
         })
+        .collect()
+}
+
+/// An evenly glowing wall, photographed from where the scene's camera stands by a lens of area A
+/// whose axis lies off the middle of the view, at θ to the wall's normal: its pixels, θ′ off the
+/// axis, collect A·cos⁴θ′/(fx·fy), and what is imported is what an opening of A/cosθ parallel to
+/// the wall collects. So it is after a flat field that is 1 on the axis.
+#[test]
+fn a_tilted_lens_collects_what_its_opening_over_the_cosine_does() {
+    let mut file = SceneFile::default();
+    file.camera.pixels = [8, 6];
+    file.camera.position = [-4.0, 13.0, 5.0];
+    let camera = Scene::new(&file, None).unwrap().camera;
+    let view = &camera.view;
+    let forwards = (DVec3::new(3.0, 9.0, 0.0) - camera.position).normalize();
+    let right = forwards.cross(DVec3::new(0.0, 1.0, 0.0)).normalize();
+    let down = forwards.cross(right);
+    let lens = Lens {
+        fx: 380.0,
+        fy: 370.0,
+        cx: 80.3,
+        cy: 17.9,
+        k1: 0.0,
+        k2: 0.0,
+        p1: 0.0,
+        p2: 0.0,
+        k3: 0.0,
+    };
+    let marks: Vec<Mark> = (0..16)
+        .map(|k| [f64::from(k % 4) / 3.0, f64::from(k / 4) / 3.0])
+        .map(|wall| {
+            let to = view.corner() + view.u() * wall[0] + view.v() * wall[1] - camera.position;
+            let along = to.dot(forwards);
+            let pixel = lens.pixel([to.dot(right) / along, to.dot(down) / along]);
+            Mark { pixel, wall }
+        })
         .collect();
-    let factor = flux.iter().sum::<f64>() / due.iter().sum::<f64>();
-    for (p, (found, due)) in flux.iter().zip(&due).enumerate() {
-        assert!(
-            (found / (due * factor) - 1.0).abs() < 2e-4,
-            "{p}: {}",
-            found / (due * factor)
-        );
+    let mapping = Mapping::from_marks(&marks, Some(lens)).unwrap().mapping;
+    let size = [240, 240];
+    let area = 0.03;
+    let cosine4 = |q: usize| {
+        let [x, y] = lens.normalised([(q % size[0]) as f64, (q / size[0]) as f64]);
+        (1.0 + x * x + y * y).powi(-2)
+    };
+    let counts: Vec<f64> = (0..size[0] * size[1])
+        .map(|q| area * cosine4(q) / (lens.fx * lens.fy))
+        .collect();
+    let flat: Vec<f64> = (0..counts.len()).map(|q| counts[q] / cosine4(q)).collect();
+    for (evenness, counts) in [(Evenness::ByLens, &counts), (Evenness::Even, &flat)] {
+        let found = Footprints::new(&camera, &mapping, size, evenness).unwrap();
+        for (p, (found, due)) in found
+            .gathered(counts)
+            .iter()
+            .zip(openings(&camera))
+            .enumerate()
+        {
+            let due = due * area / -forwards.z;
+            assert!(
+                (found / due - 1.0).abs() < 2e-4,
+                "{p}: {}, {evenness:?}",
+                found / due
+            );
+        }
     }
-    // Their sum is that of the photograph's pixels in the view.
-    let all = Footprints::new(&camera, &mapping, size, Evenness::Same).unwrap();
-    let due: f64 = all.gathered(&counts).iter().sum();
-    assert!((flux.iter().sum::<f64>() / due - 1.0).abs() < 1e-5);
+    let pose = mapping.pose().unwrap();
+    assert!((pose.cosine + forwards.z).abs() < 1e-9);
+    let height = pose.height * view.u().cross(view.v()).length().sqrt();
+    assert!((height / camera.position.z - 1.0).abs() < 1e-9);
 }
 
 /// Areas and centroids by hand, and a cut at a border.

@@ -8,7 +8,7 @@
 //! | `surface.material` | what it is |
 //! | --- | --- |
 //! | `{ lambertian = ρ }` | ρ/π |
-//! | `{ oren_nayar = ρ, roughness = σ }` | rough and matt, [`OrenNayar`]; σ in radians, 0 to π/2 |
+//! | `{ oren_nayar = ρ, roughness = σ }` | rough and matt, [`OrenNayar`] (EON, not the classical qualitative model); σ in radians, 0 to π/2 |
 //! | `{ paint = ρ, roughness = α, ior = 1.5 }` | satin paint, [`Coated`]: white (ρ = 1) reflects all light; α from 0.01 to 1, ior above 1, up to 4 |
 //! | `{ coated = ρ, roughness = α, ior = 1.5 }` | the same as in Mitsuba's `roughplastic`, where light that meets a second facet is lost: white reflects 0.6 to 0.7 of it at α = 0.3 |
 //! | `{ conductor = { eta = 0.2, k = 3.9 }, roughness = α, reflectance = ρ }` | rough metal, [`Conductor`]; ρ is 1 if absent |

@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::validation::Integration;
 use crate::model::Kernel;
 
 /// The curve of draws that all have these raw and normalized MTF, at two levels.
@@ -8,6 +9,7 @@ fn alike(seeds: u64, [raw, normalized]: [f64; 2]) -> NoiseCurve {
         elements: vec![4],
         methods: vec![Method::Pinv],
         kernel: Kernel::Physical,
+        integration: Integration::Centres,
         axis: NoiseAxis::Relative,
         levels: vec![0.1, 1.0],
         seeds,
