@@ -1,6 +1,6 @@
 //! The noise study against what the published simulation reports of its own method.
 
-use phicam::lab::{NoiseAxis, NoisePlan, NoiseTasks, Spread, run};
+use phicam::lab::{Integration, NoiseAxis, NoisePlan, NoiseTasks, Spread, run};
 use phicam::model::Kernel;
 use phicam::recovery::Method;
 use phicam::scene::Scene;
@@ -15,6 +15,7 @@ fn published(elements: usize, level: f64) -> Spread {
         elements: vec![elements],
         methods: vec![Method::Pinv],
         kernel: Kernel::Published,
+        integration: Integration::Centres,
         axis: NoiseAxis::Relative,
         levels: vec![level],
         seeds: 40,
