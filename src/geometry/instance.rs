@@ -215,8 +215,8 @@ impl Instance {
             .map(|c| self.to_world.transform_point3(c))
     }
 
-    /// The edges across which the plane of the mesh changes, and those along which it ends, by their
-    /// ends in the scene.
+    /// The edges across which the plane of the mesh changes, and those along which it ends, by
+    /// their ends in the scene.
     pub fn folds(&self) -> impl Iterator<Item = [DVec3; 2]> {
         let folds = self.mesh.folds().iter();
         folds.map(|ends| ends.map(|p| self.to_world.transform_point3(p)))

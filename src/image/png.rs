@@ -60,8 +60,8 @@ pub(super) fn png_size(bytes: &[u8]) -> Option<[usize; 2]> {
     Some([header.width, header.height].map(|n| n as usize))
 }
 
-/// γ of light = (value/full scale)^γ by its sRGB or gAMA chunk; none of other files, of PNGs that say
-/// nothing of it and of those that say that they are linear.
+/// γ of light = (value/full scale)^γ by its sRGB or gAMA chunk; none of other files, of PNGs that
+/// say nothing of it and of those that say that they are linear.
 pub(super) fn png_gamma(bytes: &[u8]) -> Option<f64> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_ignore_text_chunk(true);

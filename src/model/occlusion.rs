@@ -8,8 +8,8 @@
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
 //! centroid. A mesh is taken triangle by triangle, as far as these are not too many, and a sphere
-//! for facets that touch it, which shrink with the parts. So is what a lit point sees of a flat cell
-//! of the hidden surface. Other walls, cells and large meshes are asked ray by ray. How finely
+//! for facets that touch it, which shrink with the parts. So is what a lit point sees of a flat
+//! cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray. How finely
 //! footprints and spots are divided for this is up to [`super::divided`].
 
 use rayon::prelude::*;

@@ -23,10 +23,11 @@ pub struct Visible {
     /// How far off that may be: the larger of what the last halving of the cells changed and half
     /// of what the one before changed, and what another division of footprints and spots changes.
     /// At least two standard deviations of what viewpoints leave to chance where camera and laser
-    /// both see a part of a cell; where a shadow was met from fewer than ten cells and may be there,
-    /// at least 3/n of what a shadow takes, n cells (of what none of n saw, less than 3/n is there
-    /// in 95 of 100); and half of what is not known to be in the camera's sight or not. An estimate: edges of shadows make the integrand bend, and what is smaller than the last
-    /// cells may be missed where it is asked ray by ray.
+    /// both see a part of a cell; where a shadow was met from fewer than ten cells and may be
+    /// there, at least 3/n of what a shadow takes, n cells (of what none of n saw, less than 3/n is
+    /// there in 95 of 100); and half of what is not known to be in the camera's sight or not. An
+    /// estimate: edges of shadows make the integrand bend, and what is smaller than the last cells
+    /// may be missed where it is asked ray by ray.
     pub bound: Matrix,
     /// Cells of the hidden surfaces, in the last step.
     pub points: usize,

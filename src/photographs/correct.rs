@@ -59,8 +59,8 @@ const NEAR_AXIS: f64 = 0.1;
 
 impl Flat {
     /// From averaged photographs of even radiance, less those `dark` of the same exposure time.
-    /// With a `lens` F is 1 on its axis: near it F over [`Lens::etendue`] is 1 on average, or over the
-    /// whole photograph where the axis is not in it.
+    /// With a `lens` F is 1 on its axis: near it F over [`Lens::etendue`] is 1 on average, or over
+    /// the whole photograph where the axis is not in it.
     ///
     /// # Errors
     /// [`PhotographError::Refused`] for one without light.

@@ -30,8 +30,8 @@ fn surface(name: &str, shape: &str) -> String {
 const PLATE: &str = "rectangle = { corner = [4.44, 5.9, 2.0], u = [1, 0, 0], v = [0, 1, 0] }";
 const SPHERE: &str = "sphere = { centre = [4.94, 6.4, 2.0], radius = 0.5, face = \"outside\" }";
 
-/// Plates whose shadows few viewpoints of the one hidden element meet: what the tracer finds to 1e-5
-/// the model has within its bounds, and the verdict is that both agree.
+/// Plates whose shadows few viewpoints of the one hidden element meet: what the tracer finds to
+/// 1e-5 the model has within its bounds, and the verdict is that both agree.
 #[test]
 fn a_shadow_that_few_viewpoints_meet_is_not_forgotten() {
     let plates = [

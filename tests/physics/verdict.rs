@@ -318,8 +318,8 @@ fn a_large_deviation_is_followed_to_its_size() {
     }
 }
 
-/// Light of another picture, of measured photographs: a board of 4 × 4 fields in place of 2 × 2, and
-/// one whose levels are 0.1 and 0.9. All 64 reflectances leave what noise leaves, the likeliest
+/// Light of another picture, of measured photographs: a board of 4 × 4 fields in place of 2 × 2,
+/// and one whose levels are 0.1 and 0.9. All 64 reflectances leave what noise leaves, the likeliest
 /// single parameter more, in all of 10 draws. Of a geometry that is off the picture never explains
 /// what the parameter does not, whatever the draw.
 #[test]

@@ -107,8 +107,8 @@ fn every_method_warns_of_photographs_that_are_not_of_this_scene() {
 }
 
 /// Right photographs but for one entry, five times as bright, whose standard error is given as 0:
-/// it moves the picture and no test sees it, so it is among what is to be checked; and of numbers that
-/// fit worse than reflectances do, nothing is said.
+/// it moves the picture and no test sees it, so it is among what is to be checked; and of numbers
+/// that fit worse than reflectances do, nothing is said.
 #[test]
 fn a_wrong_entry_without_an_error_is_among_the_cures() {
     let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();

@@ -13,9 +13,9 @@
 //! ε unknown. The estimates are then set to what was found and all is done again, until the factors
 //! no longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
 //! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary. Of
-//! `joint-gp`, which knows of what size x is, the factors of the frames are the likeliest whatever x
-//! ([`Linear`]): fitted together, the picture would be the least and the factors the largest. Over
-//! ε it integrates itself ([`super::gaussian_process`]): x is the light (1 + ε) ρ here.
+//! `joint-gp`, which knows of what size x is, the factors of the frames are the likeliest whatever
+//! x ([`Linear`]): fitted together, the picture would be the least and the factors the largest.
+//! Over ε it integrates itself ([`super::gaussian_process`]): x is the light (1 + ε) ρ here.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.

@@ -70,8 +70,8 @@ impl Picture {
         }
     }
 
-    /// Adds x/s^power of parts of one triple, x = g + M h + errors of covariance C, where the mean M
-    /// has the moments of each part; the covariance is that of the second moments until
+    /// Adds x/s^power of parts of one triple, x = g + M h + errors of covariance C, where the mean
+    /// M has the moments of each part; the covariance is that of the second moments until
     /// [`Picture::centred`].
     fn add(&mut self, power: i32, parts: &[Part], [g, h]: [&DVector<f64>; 2], c: &DMatrix<f64>) {
         let [mut all, mut first, mut second] = [0.0; 3];

@@ -79,8 +79,8 @@ fn by_process(
 ///
 /// > p(ε|Φ) ∝ N(ε; 0, σ²) p(Φ|ε),   p(Φ|ε) the evidence with the factor known,
 ///
-/// the same mean, errors and evidence of elements between 0 and 1 and a factor that is off. A fit of
-/// picture and factor together is off by 36 σ².
+/// the same mean, errors and evidence of elements between 0 and 1 and a factor that is off. A fit
+/// of picture and factor together is off by 36 σ².
 #[test]
 fn a_factor_of_all_is_averaged_over_not_fitted_with_the_picture() {
     for (known, noise) in [(0.07, 0.02), (0.1, 1e-3), (0.3, 1e-5)] {
