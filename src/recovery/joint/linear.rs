@@ -110,10 +110,8 @@ impl Linear {
     /// What a method found of this problem, its factors about 1 and its evidence with their prior.
     pub(super) fn about_one(&self, mut found: Recovered) -> Recovered {
         let gains = found.nuisance.as_mut().and_then(|n| n.gains.as_mut());
-        if let Some(gains) = gains {
-            if let Some(frames) = &mut gains.frames {
-                frames.size += &self.means;
-            }
+        if let Some(frames) = gains.and_then(|gains| gains.frames.as_mut()) {
+            frames.size += &self.means;
         }
         found.log_evidence = found.log_evidence.map(|evidence| evidence + self.log_prior);
         found
