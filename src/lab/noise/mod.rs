@@ -1,11 +1,11 @@
 //! How much noise does each recovery bear?
 //!
 //! The object is a checkerboard of albedo 0 and 1, and the scene's own picture where that is
-//! another, Φcam that of the matrix model, integrated over elements, footprints and spots as
-//! `recover` does it, or taken at their centres, and the recovery inverts this very model: what is
+//! another, Φcam that of the matrix model, elements, pixels and spots at their centres or
+//! integrated over them as `recover` does it, and the recovery inverts this very model: what is
 //! lost is lost to noise, and to what the method does even without it. The latter includes, of
-//! methods that work pixel by pixel, that the integrated model is no product C·D. Each draw of the
-//! noise is recovered by every method.
+//! methods that work pixel by pixel, that the integrated model is no product C·D, which most of
+//! them do not bear. Each draw of the noise is recovered by every method.
 //!
 //! A method that is linear and unbiased keeps its mean raw MTF however loud the noise: what grows
 //! is the spread. And a ratio whose denominator W + B comes near 0 has no mean. Both are why the

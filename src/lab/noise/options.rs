@@ -57,7 +57,7 @@ pub(in crate::lab) const STUDY: Registered = Registered {
                 ),
             ],
         )
-        .or("quadrature"),
+        .or("centres"),
         Opt::choice(
             "axis",
             "What is varied",
