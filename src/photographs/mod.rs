@@ -6,9 +6,9 @@
 //!
 //! with the response R ([`Response`]), the dark frames' mean light d of the same exposure time t,
 //! the flat field F, 1 on the axis or on average, and the gain g of the photograph
-//! ([`Correction`]). The pixels of the scene's camera gather what falls into their footprints, with the ratio of the two cameras'
-//! étendues ([`Footprints`]); where the wall is in the photograph is known from marked points
-//! ([`Mapping`]) or a crop.
+//! ([`Correction`]). The pixels of the scene's camera gather what falls into their footprints, with
+//! the ratio of the two cameras' étendues ([`Footprints`]); where the wall is in the photograph is
+//! known from marked points ([`Mapping`]) or a crop.
 //!
 //! Noise is given, or found from repeats by the photon transfer line ([`noise`]); errors of dark
 //! frames and flat field are added to each entry, where those of all spots of a pixel are in truth
