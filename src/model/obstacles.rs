@@ -75,6 +75,10 @@ pub(super) fn may_shade(
     let shaded = |(wall, points): &(Option<ShapeId>, Vec<DVec3>)| {
         let place = Region::flat(hull(points.iter().copied()));
         let by = |(id, convex): &(ShapeId, bool)| {
+            // What is convex hides nothing of itself.
+            if *convex && *wall == Some(*id) {
+                return false;
+            }
             let others = hidden
                 .iter()
                 .filter(|(own, _)| *own != Some(*id) || !convex);

@@ -24,10 +24,11 @@ pub struct Visible {
     /// of what the one before changed, and what another division of footprints and spots changes.
     /// At least two standard deviations of what viewpoints leave to chance where camera and laser
     /// both see a part of a cell; where a shadow was met from fewer than ten cells and may be
-    /// there, at least 3/n of what a shadow takes, n cells (of what none of n saw, less than 3/n is
-    /// there in 95 of 100); and half of what is not known to be in the camera's sight or not. An
-    /// estimate: edges of shadows make the integrand bend, and what is smaller than the last cells
-    /// may be missed where it is asked ray by ray.
+    /// there, at least 3/n of the most that a shadow takes, n cells (of what none of n saw, less
+    /// than 3/n is there in 95 of 100; n pairs of cells and pixels, or spots, where no shadow was
+    /// met at all); and half of what is not known to be in the camera's sight or not. An estimate:
+    /// edges of shadows make the integrand bend, and what is smaller than the last cells may be
+    /// missed where it is asked ray by ray.
     pub bound: Matrix,
     /// Cells of the hidden surfaces, in the last step.
     pub points: usize,
@@ -212,9 +213,13 @@ impl Photographs {
     fn missed(&self, may: &[Vec<bool>; 2], cells: usize) -> Matrix {
         let side = |side: usize| -> Vec<f64> {
             let (met, most) = &self.met[side];
-            let most = if *most > 0.0 { *most } else { 1.0 };
+            let [looks, most] = if *most > 0.0 {
+                [cells as f64, *most]
+            } else {
+                [(cells * met.len().max(1)) as f64, 1.0]
+            };
             let missed = |(met, may): (&usize, &bool)| {
-                let few = (MISSED + 2.0 * (*met as f64).sqrt()) / cells as f64;
+                let few = (MISSED + 2.0 * (*met as f64).sqrt()) / looks;
                 f64::from(u8::from(*may && *met < FEW)) * few.min(1.0) * most
             };
             met.iter().zip(&may[side]).map(missed).collect()
