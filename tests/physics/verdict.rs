@@ -222,14 +222,13 @@ const SEEDS: u64 = 20;
 
 /// Every deviation, injected alone at twice the size that the verdict says it detects, is rejected,
 /// and named first or among those that are not told from it, in 19 of 20 seeds; the fitted value is
-/// within 3 standard errors of the injected one. A score test is one of small deviations: asked
-/// where the light is linear in it to a tenth. Twice what `factored` detects of the camera across
-/// its sight is 2.8 in., bent by 16 %, and named in 13 of 20 only.
+/// within 3 standard errors of the injected one, also where the light bends by 16 %, as twice what
+/// `factored` detects of the camera across its sight, 2.9 in.
 #[test]
 #[ignore = "slow"]
 fn every_deviation_is_found_by_name() {
     let scene = small();
-    let (mut failed, mut bent) = (Vec::new(), Vec::new());
+    let mut failed = Vec::new();
     for errors in ALL {
         let first = tested(&scene, &traced(right(), errors, 0), errors, 1e-3);
         let score_of = score(&first);
@@ -244,11 +243,8 @@ fn every_deviation_is_found_by_name() {
                 ));
                 continue;
             };
-            // What is not linear in the deviation by a tenth cannot be fitted by its slope.
             let half = light_with(&stated.name, 0.5 * injected).unwrap();
             let bend = (&light - (half * 2.0 - right())).norm() / (&light - right()).norm();
-            let linear = bend < 0.1;
-            bent.extend((!linear).then(|| stated.name.clone()));
             let same = |d: &Deviation| d.name == stated.name && d.spot == stated.spot;
             let (mut named, mut within, mut firsts) = (0, 0, 0);
             for seed in 1..=SEEDS {
@@ -256,12 +252,9 @@ fn every_deviation_is_found_by_name() {
                 let own = score(&found);
                 firsts += u64::from(own.likely.first().is_some_and(same));
                 named += u64::from(!found.agreement.agrees && own.likely.iter().any(same));
-                let fit = own
-                    .deviations
-                    .iter()
-                    .chain(&own.spots)
-                    .find(|d| same(d))
-                    .unwrap();
+                // As it is told: of what is named the value that it was followed to.
+                let all = own.likely.iter().chain(&own.deviations).chain(&own.spots);
+                let fit = { all }.find(|d| same(d)).unwrap();
                 within += u64::from((fit.value - injected).abs() <= 3.0 * fit.stderr);
             }
             println!(
@@ -269,7 +262,7 @@ fn every_deviation_is_found_by_name() {
                 stated.name, stated.unit
             );
             // 3 σ leave out 0.3 % of a normal distribution, 1 of 20 in one of 19.
-            if linear && (named < 19 || within < 19) {
+            if named < 19 || within < 19 {
                 failed.push(format!(
                     "{errors:?} {}: named {named}, within {within}",
                     stated.name
@@ -277,7 +270,6 @@ fn every_deviation_is_found_by_name() {
             }
         }
     }
-    assert_eq!(bent, ["camera, across its sight"], "bent");
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
