@@ -11,11 +11,11 @@ pub(super) const CORNER: f64 = 1e-9;
 
 /// What of the side of a figure lies within a spot.
 pub(super) struct Chord {
-    pub ends: [[f64; 2]; 2],
+    ends: [[f64; 2]; 2],
     /// The direction of the side, the figure on its left.
     pub along: [f64; 2],
     /// Distance of the side from the middle of the spot.
-    pub away: f64,
+    away: f64,
 }
 
 impl Chord {

@@ -43,6 +43,7 @@ use super::exponential::Exponential;
 use super::scale;
 use crate::num::control::{Control, Steps};
 use crate::num::linalg::product;
+use crate::num::summation::log_sum_exp;
 use crate::recovery::{
     Choice, Deviations, Method, Options, Parameter, Problem, Recovered, RecoveryError,
 };
@@ -207,10 +208,7 @@ impl Seen {
         let Some(level) = Level::new(self, of, variance) else {
             return f64::NEG_INFINITY;
         };
-        let each = self.by_scale(&level, variance);
-        let most = each.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = each.iter().map(|log| libm::exp(log - most)).sum();
-        most + libm::log(sum) + 0.5 * self.log_errors
+        log_sum_exp(&self.by_scale(&level, variance)) + 0.5 * self.log_errors
     }
 
     /// The same of each scale, but for the errors.

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::interval::interval;
 use super::{Length, Level, Seen, Triple};
 use crate::num::linalg::{gram_product, tr_product};
+use crate::num::summation::log_sum_exp;
 use crate::recovery::joint::exponential::Exponential;
 use crate::recovery::joint::reduced::over_brightest;
 use crate::recovery::{BandKind, Bands, RecoveryError, bands};
@@ -158,12 +159,11 @@ impl Seen {
     fn parts(&self, level: &Level, triple: &Triple) -> Vec<Part> {
         let each = self.by_scale(level, triple.variance);
         let most = each.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let share = |log: &f64| libm::exp(log - most);
-        let all: f64 = each.iter().map(share).sum();
+        let all = log_sum_exp(&each);
         let parts = self.scales.iter().zip(&each);
         let parts = parts.filter(|(_, log)| **log > most - FOR_NOTHING);
         let part = |(&[scale, _], log): (&[f64; 2], &f64)| Part {
-            weight: triple.weight * share(log) / all,
+            weight: triple.weight * libm::exp(log - all),
             scale,
             mean: level.mean(scale),
         };
