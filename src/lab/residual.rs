@@ -5,9 +5,14 @@
 //!
 //! > θ̂ = Σ w d r / G, G = Σ w d², Var θ̂ = Var(Σ w d r) / G².
 //!
-//! The weights are 1/σ² of a variance smoothed over pixels and spots (its logarithm a sum of a term
-//! by pixel and one by spot), so that an entry that is noisy by chance does not set its own weight;
-//! the variance of Σ w d r is then estimated from what each [`Errors`] leaves independent:
+//! The weights are 1/σ² of a variance smoothed over pixels and spots, so that an entry that is noisy
+//! by chance does not set its own weight: of the model's light m
+//!
+//! > ln σ²\[p,l\] ≈ α ln m\[p,l\] + a\[p\] + b\[l\],
+//!
+//! by least squares; α is 0 of noise alike everywhere, 1 of counts, 2 of noise that is a share of
+//! the light. The variance of Σ w d r is then estimated from what each [`Errors`] leaves
+//! independent:
 //!
 //! * `Independent`: Σ (w d s)², s the stated standard errors;
 //! * `WithinRows`: from the scatter of the pixels' sums around their fit, each divided by what it
@@ -29,6 +34,9 @@ use crate::num::statistics::{student_threshold, student_to_normal};
 
 /// 95 % of a normal distribution lie below.
 const POWER: f64 = 1.644_853_626_951_472_2;
+/// An entry with so many times the smoothed variance is weighed by its own: not by chance does an
+/// error of many replicates come out 4 times too large.
+const BEYOND: f64 = 16.0;
 /// Fewer independent rows than this do not tell their own scatter.
 const ENOUGH_ROWS: f64 = 16.0;
 
@@ -67,18 +75,18 @@ impl<'a> Residual<'a> {
                 f64::from(u8::from(evidence.counts(p + l * rows)))
             }),
             Weights::Smoothed => {
-                let smooth = smoothed(&variance, &known);
+                let smooth = smoothed(&variance, evidence.model, &known);
                 Matrix::from_fn(rows, columns, |p, l| {
                     let (at, own) = (p + l * rows, variance[(p, l)]);
                     if !known(at) || own == 0.0 {
                         return 0.0;
                     }
-                    if own < 2.0 * smooth[at] {
+                    if own < BEYOND * smooth[at] {
                         return 1.0 / smooth[at];
                     }
                     // Weighed by its own variance: E[σ²/s⁴] is ν/(ν − 4) times E[1/s²].
                     variance[(p, l)] *= freedom / (freedom - 4.0).max(1.0);
-                    2.0 / own
+                    BEYOND / own
                 })
             }
         };
@@ -197,27 +205,42 @@ impl<'a> Residual<'a> {
     }
 }
 
-/// exp of a sum of a term by row and one by column, fitted to the logarithm of the entries that are
-/// known and positive.
-fn smoothed(variance: &Matrix, known: &dyn Fn(usize) -> bool) -> Matrix {
-    let (rows, columns) = variance.shape();
+/// The variance as a power of the light times a factor by row and one by column, fitted to the
+/// logarithms of the entries that are known and positive. Without light it has the mean of its row
+/// and column.
+fn smoothed(variance: &Matrix, light: &Matrix, known: &dyn Fn(usize) -> bool) -> Matrix {
+    let (by_line, of_variance) = split(variance, known);
+    let (_, of_light) = split(light, known);
+    let power = of_variance.dot(&of_light) / of_light.norm_squared();
+    let power = if power.is_finite() { power } else { 0.0 };
+    (by_line + of_light * power).map(libm::exp)
+}
+
+/// Logarithms as a term by row and one by column, and what is left of each; 0 of an entry that is
+/// not known or not positive.
+fn split(values: &Matrix, known: &dyn Fn(usize) -> bool) -> (Matrix, Matrix) {
+    let (rows, columns) = values.shape();
     let (mut by_row, mut by_column) = (vec![[0.0; 2]; rows], vec![[0.0; 2]; columns]);
     let mut all = [0.0; 2];
-    for (at, v) in variance
-        .iter()
-        .enumerate()
-        .filter(|(i, v)| known(*i) && **v > 0.0)
-    {
-        for sum in [&mut by_row[at % rows], &mut by_column[at / rows], &mut all] {
-            sum[0] += libm::log(*v);
-            sum[1] += 1.0;
+    let log = |at: usize| (known(at) && values[at] > 0.0).then(|| libm::log(values[at]));
+    let logs: Vec<Option<f64>> = (0..values.len()).map(log).collect();
+    for (at, log) in logs.iter().enumerate() {
+        if let Some(log) = log {
+            for sum in [&mut by_row[at % rows], &mut by_column[at / rows], &mut all] {
+                sum[0] += log;
+                sum[1] += 1.0;
+            }
         }
     }
     let whole = all[0] / all[1].max(1.0);
     let mean = |[sum, n]: [f64; 2]| if n > 0.0 { sum / n } else { whole };
-    Matrix::from_fn(rows, columns, |p, l| {
-        libm::exp(mean(by_row[p]) + mean(by_column[l]) - whole)
-    })
+    let by_line = Matrix::from_fn(rows, columns, |p, l| {
+        mean(by_row[p]) + mean(by_column[l]) - whole
+    });
+    let left = Matrix::from_fn(rows, columns, |p, l| {
+        logs[p + l * rows].map_or(0.0, |log| log - by_line[(p, l)])
+    });
+    (by_line, left)
 }
 
 /// A deviation with its error.
@@ -250,3 +273,7 @@ impl Fit {
         delta * self.stderr + 2.0 * self.bias
     }
 }
+
+#[cfg(test)]
+#[path = "residual_tests.rs"]
+mod tests;

@@ -205,7 +205,7 @@ impl Describe for Occluders {
                     SEARCHED[0], SEARCHED[0], SEARCHED[1]
                 ),
                 format!(
-                    "Boards have albedos 0 and 1. Limits are of {} draws of modelled photographs, recovered by joint; a dash is a limit below 1e-14, or a picture of which no light comes into view. Occluders are black; of one that reflects `recover --occluder-light` estimates the light. What stands in the scene's way by itself stays there in every row.",
+                    "Boards have albedos 0 and 1. Limits are of {} draws of photographs of the matrix model (elements and spots at their centres), recovered by joint; a dash is a limit below 1e-14, or a picture of which no light comes into view. Occluders are black; of one that reflects `recover --occluder-light` estimates the light. What stands in the scene's way by itself stays there in every row.",
                     self.draws
                 ),
             ],
