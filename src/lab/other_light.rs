@@ -37,7 +37,7 @@ impl Left {
         beside: &Nuisance<'_>,
     ) -> Result<Option<Self>, LinalgError> {
         let (phi, model) = (evidence.traced, evidence.model);
-        let roots = Residual::new(*evidence, test, Weights::Smoothed).roots();
+        let roots = Residual::new(*evidence, test, Weights::Least).roots();
         let Some(eliminated) = Eliminated::new(roots, beside, model)? else {
             return Ok(None);
         };
@@ -72,18 +72,19 @@ fn scale(
     eliminated: &Eliminated,
     frame_gain: Option<f64>,
 ) -> [f64; 3] {
-    let [phi, model] = [evidence.traced, evidence.model].map(|m| eliminated.without_others(m));
-    let dark = &model * 0.0;
+    let model = eliminated.without_others(evidence.model);
+    // s is 1 and the fit of what is left: the weights are those of the model's light.
+    let phi = evidence.model + eliminated.without_others(&(evidence.traced - evidence.model));
     let own = Evidence {
         traced: &phi,
-        model: &dark,
         bound: None,
         ..*evidence
     };
-    let residual = Residual::new(own, test, Weights::Smoothed);
-    let Some(fit) = residual.fit(&model, &(0..phi.ncols())) else {
+    let residual = Residual::new(own, test, Weights::Least);
+    let Some(mut fit) = residual.fit(&model, &(0..phi.ncols())) else {
         return [0.0; 3];
     };
+    fit.value += 1.0;
     let roots = residual.roots();
     let [left, whole] = [&model, evidence.model].map(|m| roots.component_mul(m));
     let shares = left.column_iter().zip(whole.column_iter());

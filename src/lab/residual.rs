@@ -5,14 +5,14 @@
 //!
 //! > θ̂ = Σ w d r / G, G = Σ w d², Var θ̂ = Var(Σ w d r) / G².
 //!
-//! The weights are 1/σ² of a variance smoothed over pixels and spots, so that an entry that is noisy
-//! by chance does not set its own weight: of the model's light m
+//! The weights are 1/σ². Of a variance that was estimated it is one smoothed over pixels and spots,
+//! so that an entry that is noisy by chance does not set its own weight: of the model's light m
 //!
 //! > ln σ²\[p,l\] ≈ α ln m\[p,l\] + a\[p\] + b\[l\],
 //!
 //! by least squares; α is 0 of noise alike everywhere, 1 of counts, 2 of noise that is a share of
-//! the light. The variance of Σ w d r is then estimated from what each [`Errors`] leaves
-//! independent:
+//! the light. Where the variances scatter about that by far more than chance, each weighs its own.
+//! The variance of Σ w d r is then estimated from what each [`Errors`] leaves independent:
 //!
 //! * `Independent`: Σ (w d s)², s the stated standard errors;
 //! * `WithinRows`: from the scatter of the pixels' sums around their fit, each divided by what it
@@ -30,21 +30,24 @@ use std::ops::Range;
 use super::certainty::Errors;
 use super::evidence::{Evidence, Test};
 use crate::matrix::Matrix;
-use crate::num::statistics::{student_threshold, student_to_normal};
+use crate::num::statistics::{student_threshold, student_to_normal, trigamma};
 
 /// 95 % of a normal distribution lie below.
 const POWER: f64 = 1.644_853_626_951_472_2;
 /// An entry with so many times the smoothed variance is weighed by its own: not by chance does an
 /// error of many replicates come out 4 times too large.
 const BEYOND: f64 = 16.0;
+/// Up to such a variance of ln σ² about what is smooth, weights by that are nearly the best: those
+/// of a normal law lose exp of it in variance.
+const SMOOTH: f64 = 0.5;
 /// Fewer independent rows than this do not tell their own scatter.
 const ENOUGH_ROWS: f64 = 16.0;
 
 /// Which weights a fit has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Weights {
-    /// Those of the least variance, as far as that is smooth.
-    Smoothed,
+    /// Those of the least variance, as far as that is known or smooth.
+    Least,
     /// All alike.
     Alike,
 }
@@ -74,19 +77,26 @@ impl<'a> Residual<'a> {
             Weights::Alike => Matrix::from_fn(rows, columns, |p, l| {
                 f64::from(u8::from(evidence.counts(p + l * rows)))
             }),
-            Weights::Smoothed => {
-                let smooth = smoothed(&variance, evidence.model, &known);
+            Weights::Least => {
+                let (smooth, scatter) = smoothed(&variance, evidence.model, &known);
+                let is_estimated = test.known.replicates.is_some() || test.known.follows_entries;
+                let by_chance = trigamma(0.5 * freedom);
+                let beyond = if is_estimated && scatter - by_chance < SMOOTH {
+                    BEYOND
+                } else {
+                    0.0
+                };
                 Matrix::from_fn(rows, columns, |p, l| {
                     let (at, own) = (p + l * rows, variance[(p, l)]);
                     if !known(at) || own == 0.0 {
                         return 0.0;
                     }
-                    if own < BEYOND * smooth[at] {
+                    if own < beyond * smooth[at] || evidence.stderr[at] == 0.0 {
                         return 1.0 / smooth[at];
                     }
                     // Weighed by its own variance: E[σ²/s⁴] is ν/(ν − 4) times E[1/s²].
                     variance[(p, l)] *= freedom / (freedom - 4.0).max(1.0);
-                    BEYOND / own
+                    beyond.max(1.0) / own
                 })
             }
         };
@@ -206,14 +216,17 @@ impl<'a> Residual<'a> {
 }
 
 /// The variance as a power of the light times a factor by row and one by column, fitted to the
-/// logarithms of the entries that are known and positive. Without light it has the mean of its row
-/// and column.
-fn smoothed(variance: &Matrix, light: &Matrix, known: &dyn Fn(usize) -> bool) -> Matrix {
+/// logarithms of the entries that are known and positive, and how these scatter about it, their
+/// variance. Without light it has the mean of its row and column.
+fn smoothed(variance: &Matrix, light: &Matrix, known: &dyn Fn(usize) -> bool) -> (Matrix, f64) {
     let (by_line, of_variance) = split(variance, known);
     let (_, of_light) = split(light, known);
     let power = of_variance.dot(&of_light) / of_light.norm_squared();
     let power = if power.is_finite() { power } else { 0.0 };
-    (by_line + of_light * power).map(libm::exp)
+    let of_light = of_light * power;
+    let count = (0..variance.len()).filter(|at| known(*at)).count();
+    let scatter = (of_variance - &of_light).norm_squared() / count.max(1) as f64;
+    ((by_line + of_light).map(libm::exp), scatter)
 }
 
 /// Logarithms as a term by row and one by column, and what is left of each; 0 of an entry that is

@@ -30,24 +30,42 @@ fn lacking() -> [Matrix; 3] {
     [light, traced, stderr]
 }
 
-/// The scale of right light is 1 within its error: the law of the blocks is known.
+/// Of errors that are known entry by entry the fit has the variance 1/Σ (d/σ)² (Gauss and Markov).
 #[test]
-fn errors_that_hang_together_with_the_light_do_not_shift_its_scale() {
-    let [light, traced, stderr] = lacking();
+fn known_errors_weigh_their_own_entries() {
+    let [light, traced, _] = lacking();
+    let stderr = Matrix::from_fn(ROWS, COLUMNS, |p, l| {
+        libm::exp(4.0 * (1.3 * p as f64 * (1 + l) as f64).sin())
+    });
+    let fit = fitted([&light, &traced, &stderr], None);
+    let information = light.component_div(&stderr).norm_squared();
+    let off = fit.stderr * information.sqrt() - 1.0;
+    assert!(off.abs() < 1e-9, "{off}");
+}
+
+/// The fit of the light to what was traced.
+fn fitted([light, traced, stderr]: [&Matrix; 3], replicates: Option<u32>) -> Fit {
     let evidence = Evidence {
-        traced: &traced,
-        stderr: &stderr,
-        model: &light,
+        traced,
+        stderr,
+        model: light,
         bound: None,
         left_out: None,
         eliminated: None,
     };
     let test = Test {
         significance: 0.01,
-        known: Certainty::new(Errors::Independent, Some(BLOCKS)),
+        known: Certainty::new(Errors::Independent, replicates),
     };
-    let residual = Residual::new(evidence, test, Weights::Smoothed);
-    let fit = residual.fit(&light, &(0..COLUMNS)).expect("light");
+    let residual = Residual::new(evidence, test, Weights::Least);
+    residual.fit(light, &(0..COLUMNS)).expect("light")
+}
+
+/// The scale of right light is 1 within its error: the law of the blocks is known.
+#[test]
+fn errors_that_hang_together_with_the_light_do_not_shift_its_scale() {
+    let [light, traced, stderr] = lacking();
+    let fit = fitted([&light, &traced, &stderr], Some(BLOCKS));
     assert!(fit.z().abs() < 4.0, "{fit:?}");
     // The least error that noise of this share allows, 1/√(entries × blocks).
     let least = 1.0 / f64::sqrt((ROWS * COLUMNS) as f64 * f64::from(BLOCKS));

@@ -82,7 +82,7 @@ pub(super) fn score(
     derivatives: &Derivatives<'_>,
     remaining: Remaining<'_>,
 ) -> Score {
-    let residual = Residual::new(evidence, test, Weights::Smoothed);
+    let residual = Residual::new(evidence, test, Weights::Least);
     let spots = evidence.model.ncols();
     let parameters = derivatives.parameters;
     let single = parameters.iter().filter(|p| p.each_spot.is_some()).count() * spots;

@@ -128,8 +128,9 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
     let d = normal(2);
     let sigma = if beside.free_scale { 20.0 } else { 0.1 };
     let unit = if beside.free_scale { 300.0 } else { 1.0 };
-    let phi = &model * unit + &d * (0.03 * unit) + normal(3) * sigma;
-    let stderr = model.map(|_| sigma);
+    // Errors of their own, no product of one by pixel and one by spot.
+    let stderr = normal(5).map(|x| sigma * libm::exp(x));
+    let phi = &model * unit + &d * (0.03 * unit) + normal(3).component_mul(&stderr);
     // Pixel 4 is never seen, and two entries are left out.
     let is_hole = |p: usize, l: usize| is_holed && (p == 4 || (p, l) == (2, 1) || (p, l) == (7, 0));
     let holes = Matrix::from_fn(ROWS, COLUMNS, |p, l| f64::from(u8::from(is_hole(p, l))));
@@ -167,7 +168,8 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
         assert!(off < 1e-8, "{what}: {found} in place of {expected}");
     };
     // The scale is fitted with factors of the frames as noise that has no part in its weights.
-    let mut noise = Matrix::identity(kept.len(), kept.len()) * (sigma * sigma);
+    let own: Vec<f64> = seen(&stderr).iter().map(|sigma| sigma * sigma).collect();
+    let mut noise = Matrix::from_diagonal(&own.clone().into());
     let columns = [others.clone(), vec![seen(&model)]].concat();
     let s = if beside.free_scale {
         let [s, error, _] = left.scale.unwrap();
@@ -249,7 +251,7 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
     let prior = |k: usize| (0..count).map(move |i| f64::from(u8::from(i == k)));
     let columns: Vec<Vec<f64>> = columns.into_iter().map(|c| with_zeros(c, count)).collect();
     let widened = Matrix::from_fn(kept.len() + count, kept.len() + count, |i, j| {
-        let own = if i < kept.len() { sigma * sigma } else { 1.0 };
+        let own = own.get(i).copied().unwrap_or(1.0);
         if i == j { own } else { 0.0 }
     });
     let frames = gains.frames.iter().chain(&gains.whole);

@@ -43,7 +43,7 @@ pub(super) fn followed(
             model: &model,
             ..evidence
         };
-        let residual = Residual::new(own, test, Weights::Smoothed);
+        let residual = Residual::new(own, test, Weights::Least);
         let step = residual.fit(&derivative, columns)?;
         let fit = Fit {
             value: size,
@@ -113,7 +113,7 @@ mod tests {
             significance: 1e-3,
         };
         let all = 0..columns;
-        let start = Residual::new(evidence, test, Weights::Smoothed);
+        let start = Residual::new(evidence, test, Weights::Least);
         let first = start.fit(&slope(0.0), &all).unwrap();
         assert!(first.value > 2.0, "{}", first.value);
         let moved = |theta: f64| Some([light(theta) - &here, slope(theta)]);

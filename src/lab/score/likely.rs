@@ -107,7 +107,7 @@ impl Causes<'_> {
             model: &model,
             ..evidence
         };
-        let residual = Residual::new(evidence, self.test, Weights::Smoothed);
+        let residual = Residual::new(evidence, self.test, Weights::Least);
         residual.missed(&(&best.change - &other.change), &other.derivative)
     }
 
