@@ -252,7 +252,8 @@ impl Certainty {
 const BEYOND_CHANCE: f64 = 6.0;
 
 /// The correlation of what is left of neighbouring pixels, over `entries` entries of independent
-/// noise, where chance leaves none so large; `beside` is Σ z z′ over neighbours and `squares` Σ z².
+/// noise (of variances unknown as many as have the scatter √Σ (z z′)² of Σ z z′), where chance
+/// leaves none so large; `beside` is Σ z z′ over neighbours and `squares` Σ z².
 pub(super) fn correlated(beside: f64, squares: f64, entries: f64) -> Option<f64> {
     let correlation = beside / squares;
     (correlation * entries.sqrt() > BEYOND_CHANCE).then_some(correlation)
@@ -263,7 +264,7 @@ pub(super) fn neighbours_share(correlation: f64, what: &str) -> String {
     format!(
         "what is left of neighbouring pixels HANGS TOGETHER (correlation {}): they share noise, as where \
          photographs were resampled or blurred, or the model lacks something smooth. Bin the pixels until \
-         it is gone, or state no noise and take --error-field; {what}",
+         it is gone, or take --error-field, with no noise stated; {what}",
         figure(correlation, 2)
     )
 }

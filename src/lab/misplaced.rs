@@ -9,6 +9,8 @@ use crate::scene::{Parameter, Scene, Twist, Velocity};
 
 /// Sine of the angle below which a shift stays within a plane.
 const WITHIN: f64 = 1e-9;
+/// Sine of the angle below which a camera stands straight before the middle of its view.
+const STRAIGHT: f64 = 1e-6;
 
 /// What a size is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,13 +116,7 @@ pub(super) const ALL: [Misplaced; 18] = [
         Motion::Devices(|scene| scene.camera.view.normal()),
     ),
     length("camera, along its sight", Motion::Camera(sight)),
-    length(
-        "camera, across its sight",
-        Motion::Camera(|scene| {
-            let across = sight(scene).cross(scene.camera.view.normal());
-            across.normalize_or_zero()
-        }),
-    ),
+    length("camera, across its sight", Motion::Camera(across)),
     sized("wall bent (sagitta)", Size::Positive, Motion::Bend),
     sized("scale of the view", Size::Percent, Motion::ViewScale),
     number("diameter of the spots", "laser.spot_diameter"),
@@ -255,9 +251,22 @@ fn side(scene: &Scene, [from, to]: [[f64; 2]; 2]) -> Option<DVec3> {
     Some((shape.at(to).position - shape.at(from).position).normalize_or_zero())
 }
 
-/// The direction from the camera to the first corner of its view.
+/// The direction from the camera to the middle of its view.
 fn sight(scene: &Scene) -> DVec3 {
-    (scene.camera.view.corners()[0] - scene.camera.position).normalize_or_zero()
+    let middle = scene.camera.view.at([0.5; 2]).position;
+    (middle - scene.camera.position).normalize_or_zero()
+}
+
+/// Across that, along the wall; of a camera straight before the middle along the view's columns.
+fn across(scene: &Scene) -> DVec3 {
+    let view = &scene.camera.view;
+    let across = sight(scene).cross(view.normal());
+    if across.length() > STRAIGHT {
+        across.normalize()
+    } else {
+        let [from, to] = [0.0, 1.0].map(|u| view.at([u, 0.5]).position);
+        (to - from).normalize_or_zero()
+    }
 }
 
 /// The scene with every spot moved by itself, by `size` in the root mean square.

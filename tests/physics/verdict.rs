@@ -165,11 +165,11 @@ pub(super) fn deviant(name: &str, size: f64) -> Option<Scene> {
         "scale of the view" => Some(scene.with_scaled_view(1.0 + 0.01 * size)),
         "camera and laser, off the wall" => Some(scene.with_moved_camera(DVec3::Z * size)),
         "camera, along its sight" => {
-            let sight = (DVec3::new(3.25, 2.75, 0.0) - scene.camera.position).normalize();
+            let sight = (DVec3::new(4.875, 4.375, 0.0) - scene.camera.position).normalize();
             Some(scene.with_moved_camera(sight * size))
         }
         "camera, across its sight" => {
-            let sight = (DVec3::new(3.25, 2.75, 0.0) - scene.camera.position).normalize();
+            let sight = (DVec3::new(4.875, 4.375, 0.0) - scene.camera.position).normalize();
             Some(scene.with_moved_camera(sight.cross(DVec3::Z).normalize() * size))
         }
         "wall bent (sagitta)" => scene.with_bent_relay(size).ok(),

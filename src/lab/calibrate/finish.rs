@@ -231,15 +231,16 @@ impl Problem<'_> {
         (0..phi.ncols()).map(of).sum()
     }
 
-    /// The correlation of what is left of neighbouring pixels, where it is more than chance, of a
-    /// noise that is stated for each entry's own.
+    /// The correlation of what is left of neighbouring pixels, where it is more than chance, of
+    /// noise that is each entry's own: of one that is not stated too, by the scatter
+    /// √Σ (z z′)² of Σ z z′, whatever the variances are.
     fn neighbours(&self, best: &State, light: &Light) -> Result<Option<f64>, LabError> {
         let own = self.photographs.certainty.errors == Errors::Independent;
-        if self.photographs.stderr.is_none() || self.cosines.is_some() || !own {
+        if self.cosines.is_some() || !own {
             return Ok(None);
         }
-        let [beside, squares] = self.seen(best.factor).beside(light, &best.value.rho)?;
-        Ok(correlated(beside, squares, best.value.count))
+        let [beside, products, squares] = self.seen(best.factor).beside(light, &best.value.rho)?;
+        Ok(correlated(beside, squares, squares * squares / products))
     }
 }
 

@@ -133,19 +133,22 @@ impl Seen<'_> {
         Ok(left.iter().sum())
     }
 
-    /// Σ z z′ over pixels side by side and Σ z², z of y − Aρ.
-    pub(super) fn beside(&self, light: &Light, rho: &DVector<f64>) -> Result<[f64; 2], LabError> {
-        let of = |l: usize| -> Result<[f64; 2], LabError> {
+    /// Σ z z′ over pixels side by side, Σ (z z′)² and Σ z², z of y − Aρ.
+    pub(super) fn beside(&self, light: &Light, rho: &DVector<f64>) -> Result<[f64; 3], LabError> {
+        let of = |l: usize| -> Result<[f64; 3], LabError> {
             let [y, a] = self.frame(light, l)?;
             let left = y.column(0) - a * rho;
             let pairs = left.iter().zip(left.iter().skip(1));
-            Ok([pairs.map(|(a, b)| a * b).sum(), left.norm_squared()])
+            let [sum, squares] = pairs.fold([0.0; 2], |[sum, squares], (a, b)| {
+                [sum + a * b, squares + (a * b).powi(2)]
+            });
+            Ok([sum, squares, left.norm_squared()])
         };
         let frames = (0..self.frames()).into_par_iter().map(of);
-        let frames: Vec<[f64; 2]> = frames.collect::<Result<_, _>>()?;
+        let frames: Vec<[f64; 3]> = frames.collect::<Result<_, _>>()?;
         Ok(frames
             .iter()
-            .fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]))
+            .fold([0.0; 3], |sum, of| std::array::from_fn(|k| sum[k] + of[k])))
     }
 
     /// E r² of each row, over all frames: r what picture and other light leave of y, the

@@ -105,14 +105,14 @@ fn gains_larger_than_stated_are_told() {
 
 /// Noise of which each pixel has half of its neighbour's has the variance that is stated, and χ²
 /// says nothing: that neighbours share it is told, errors by blocks of pixels count, and over 24
-/// draws the surface is off by what is stated, √χ²/n within four of its errors. Of single pixels'
-/// noise nothing is told.
+/// draws the surface is off by what is stated, √χ²/n within four of its errors. Of a noise that is
+/// not stated it is told too, of single pixels' noise nothing.
 #[test]
 fn noise_that_neighbours_share_is_in_the_errors() {
     let scene = small("bench", 16);
     let (exact, _) = photographs(&scene, 4, 0.0, 1);
     let stderr = &exact * 1e-2;
-    let found = |seed: u64, share: f64| {
+    let found = |seed: u64, share: f64, is_stated: bool| {
         let mut random = normal(seed);
         let own = Matrix::from_fn(exact.nrows() + 1, exact.ncols(), |_, _| random()[0]);
         let noise =
@@ -120,12 +120,16 @@ fn noise_that_neighbours_share_is_in_the_errors() {
         let noise = Matrix::from_fn(exact.nrows(), exact.ncols(), noise);
         let phi = &exact + stderr.component_mul(&noise);
         let plan = plan(&["hidden.normal"], 4);
-        let found = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
-        found.unwrap()
+        let photographs = Unexplained {
+            stderr: is_stated.then_some(&stderr),
+            ..unexplained(&phi, &stderr)
+        };
+        plan.calibrate(&scene, &photographs, Control::none())
+            .unwrap()
     };
     let draws = 24;
     let squares = (0..draws).map(|seed| {
-        let found = found(seed, 1.0);
+        let found = found(seed, 1.0, true);
         assert!((found.neighbours.unwrap() - 0.5).abs() < 0.1);
         let notes = found.describe().notes.concat();
         assert!(notes.contains("HANGS TOGETHER"), "{notes}");
@@ -138,7 +142,10 @@ fn noise_that_neighbours_share_is_in_the_errors() {
         (rms - 1.0).abs() < 4.0 / (2.0 * draws as f64).sqrt(),
         "{rms}"
     );
-    let alone = found(1, 0.0);
+    let unstated = found(1, 1.0, false);
+    assert!((unstated.neighbours.unwrap() - 0.5).abs() < 0.1);
+    assert!(found(1, 0.0, false).neighbours.is_none());
+    let alone = found(1, 0.0, true);
     assert!(alone.neighbours.is_none() && alone.found[0].by_blocks.is_none());
 }
 
