@@ -2548,8 +2548,8 @@ BREAKS = [
     Break(
         "A list names a column once",
         "src/photographs/list.rs",
-        "(1..head.len()).find(",
-        "(9..head.len()).find(",
+        "first_repeated(&head)",
+        "first_repeated(&head[..1])",
         "lib",
         "photographs::list::tests::a_list_is_read_line_by_line",
         27,
@@ -2557,8 +2557,8 @@ BREAKS = [
     Break(
         "`-D` gives a key once",
         "src/cli/mod.rs",
-        "(1..define.len()).find(is_again)",
-        "(3..define.len()).find(is_again)",
+        "first_repeated(define.iter().map(|(key, _)| key))",
+        "first_repeated(define.iter().map(|(key, _)| key).take(1))",
         "cli",
         "defining::a_definition_that_means_nothing_is_refused",
         27,

@@ -108,6 +108,7 @@ use args::{Args, Command};
 use console::{Console, complain};
 use failure::{Codes, Failure, Outcome};
 
+use crate::num::repetition::first_repeated;
 use crate::store::harmless;
 
 /// Refuses other values of a scene's keys for a command that names no scene.
@@ -123,8 +124,7 @@ fn refuse_undefinable(command: &Command, define: &[(String, String)]) -> Result<
 
 /// Refuses two values of one key, of which only one could hold.
 fn refuse_defined_twice(define: &[(String, String)]) -> Result<(), Failure> {
-    let is_again = |k: &usize| define[..*k].iter().any(|(key, _)| *key == define[*k].0);
-    let Some((key, _)) = (1..define.len()).find(is_again).map(|k| &define[k]) else {
+    let Some(key) = first_repeated(define.iter().map(|(key, _)| key)) else {
         return Ok(());
     };
     let cause = format!("-D gives {key} twice");

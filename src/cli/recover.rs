@@ -16,6 +16,7 @@ use super::run_folder::{PHI, RECOVERED, RunFolder, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
 use crate::folder::{Origin, Record};
 use crate::lab::{Certainty, RecoveredObject, by_trust, unmodelled};
+use crate::num::repetition::first_repeated;
 use crate::recovery::Method;
 use crate::store::digest;
 use request::RecoveryRequest;
@@ -225,11 +226,10 @@ fn refuse_unscaled(
 }
 
 fn refuse_repetition(methods: &[Method]) -> Result<(), Failure> {
-    let repeated = (1..methods.len()).find(|k| methods[..*k].contains(&methods[*k]));
-    match repeated {
+    match first_repeated(methods.iter().map(|method| method.name())) {
         None => Ok(()),
-        Some(k) => Err(Failure::new(
-            format!("--method names {} twice", methods[k]),
+        Some(name) => Err(Failure::new(
+            format!("--method names {name} twice"),
             "name each once: their files would overwrite each other",
         )),
     }

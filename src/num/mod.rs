@@ -20,6 +20,7 @@ pub mod poisson;
 #[doc(hidden)]
 pub mod quadratic;
 pub mod quadrature;
+pub(crate) mod repetition;
 #[doc(hidden)]
 pub mod search;
 pub mod separable;

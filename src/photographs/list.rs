@@ -5,6 +5,7 @@ use std::path::Path;
 use super::error::{PhotographError, refused};
 use super::read::Reader;
 use super::set::{FrameTable, Set};
+use crate::num::repetition::first_repeated;
 
 /// The tables of a set's photographs: those that it has, or those of its CSV file.
 ///
@@ -67,10 +68,9 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
             format!("name its columns by {}", known.join(", ")),
         ));
     }
-    let twice = (1..head.len()).find(|k| head[..*k].contains(&head[*k]));
-    if let Some(k) = twice {
+    if let Some(twice) = first_repeated(&head) {
         return Err(refused(
-            format!("{name} has two columns `{}`", head[k]),
+            format!("{name} has two columns `{twice}`"),
             "name every column once, and remove the one that does not count",
         ));
     }

@@ -1,6 +1,5 @@
 //! Which photograph is of which spot.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::error::{PhotographError, refused};
@@ -10,6 +9,7 @@ use super::plane::{Averaged, Plane};
 use super::read::Reader;
 use super::set::{FrameTable, Set};
 use crate::image::Samples;
+use crate::num::repetition::first_repeated;
 
 /// A file of photographs of one spot, or of spots in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,11 +105,10 @@ pub(super) fn takes(
 /// Refuses a file that is named twice: its noise would count as that of two photographs, or two
 /// spots would have one.
 fn once(takes: Vec<Take>) -> Result<Vec<Take>, PhotographError> {
-    let mut named = BTreeSet::new();
-    match takes.iter().find(|take| !named.insert(&take.path)) {
+    match first_repeated(takes.iter().map(|take| &take.path)) {
         None => Ok(takes),
         Some(twice) => Err(refused(
-            format!("{} is named twice", twice.path.display()),
+            format!("{} is named twice", twice.display()),
             "name every photograph once",
         )),
     }
