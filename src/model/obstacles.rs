@@ -8,15 +8,13 @@ use rayon::prelude::*;
 use super::spot::reach;
 use super::wall_point;
 use crate::geometry::{DVec3, Region, Shape, ShapeId, Side};
-use crate::scene::{Scene, Spot};
+use crate::scene::{Scene, Spot, Surface};
 
 /// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface
 /// or the device.
 pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
-    let shapes = scene.bvh().shapes();
-    let around = |(id, _): (usize, &_)| (Some(id as ShapeId), Region::around(&shapes[id]));
     let device = |p: DVec3| (None, Region::point(p));
-    let hidden: Vec<End> = scene.hidden().map(around).collect();
+    let hidden = around(scene, scene.hidden());
     let reach = DVec3::splat(reach(scene.laser.profile));
     let rim = |spot: &Spot| [spot.target.position - reach, spot.target.position + reach];
     let region = |id, corners: Vec<DVec3>| (Some(id), Region::flat(corners));
@@ -35,26 +33,22 @@ pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
         (!corners.is_empty()).then(|| region(id as ShapeId, hull(corners.into_iter())))
     });
     let together: Vec<End> = together.collect();
-    let seen = seen_walls(scene).unwrap_or_else(|| scene.relays().map(around).collect());
+    let seen = seen_walls(scene).unwrap_or_else(|| around(scene, scene.relays()));
     let may = |id: &ShapeId| {
-        let convex = is_convex(&shapes[*id as usize]);
-        let between = |(s, a): &End, (t, b): &End| scene.bvh().may_block(*id, a, b, [*s, *t]);
+        let screen = screen(scene, *id);
         let any = |walls: &[End], from: DVec3| {
             let from = device(from);
-            let others = || {
-                hidden
-                    .iter()
-                    .filter(|(own, _)| *own != Some(*id) || !convex)
+            let to = |wall: &End| {
+                may_part(scene, *id, [wall, &from]) || may_hide(scene, screen, (wall, &hidden))
             };
-            let to =
-                |wall: &End| between(wall, &from) || others().any(|surface| between(wall, surface));
             walls.iter().any(to)
         };
         let laser = scene.laser.position;
         let lights = || !scene.laser.is_shining() && any(&together, laser) && any(&lit, laser);
         any(&seen, scene.camera.position) || lights()
     };
-    (0..shapes.len() as ShapeId).filter(may).collect()
+    let shapes = 0..scene.bvh().shapes().len() as ShapeId;
+    shapes.filter(may).collect()
 }
 
 /// Whether one of these obstacles may stand between a hidden surface and each of these places, the
@@ -64,30 +58,35 @@ pub(super) fn may_shade(
     obstacles: &[ShapeId],
     places: impl Iterator<Item = (Option<ShapeId>, Vec<DVec3>)>,
 ) -> Vec<bool> {
-    let shapes = scene.bvh().shapes();
-    let hidden: Vec<End> = scene
-        .hidden()
-        .map(|(id, _)| (Some(id as ShapeId), Region::around(&shapes[id])))
-        .collect();
-    let convex = obstacles.iter().map(|id| is_convex(&shapes[*id as usize]));
-    let obstacles: Vec<(ShapeId, bool)> = obstacles.iter().copied().zip(convex).collect();
+    let hidden = around(scene, scene.hidden());
+    let screens = obstacles.iter().map(|id| screen(scene, *id));
+    let screens: Vec<(ShapeId, bool)> = screens.collect();
     let places: Vec<_> = places.collect();
     let shaded = |(wall, points): &(Option<ShapeId>, Vec<DVec3>)| {
-        let place = Region::flat(hull(points.iter().copied()));
+        let place = (*wall, Region::flat(hull(points.iter().copied())));
         let by = |(id, convex): &(ShapeId, bool)| {
-            // What is convex hides nothing of itself.
-            if *convex && *wall == Some(*id) {
-                return false;
-            }
-            let others = hidden
-                .iter()
-                .filter(|(own, _)| *own != Some(*id) || !convex);
-            let mut each = others.map(|(own, region)| (region, [*wall, *own]));
-            each.any(|(region, ends)| scene.bvh().may_block(*id, &place, region, ends))
+            let is_own = *convex && *wall == Some(*id);
+            !is_own && may_hide(scene, (*id, *convex), (&place, &hidden))
         };
-        !points.is_empty() && obstacles.iter().any(by)
+        !points.is_empty() && screens.iter().any(by)
     };
     places.par_iter().map(shaded).collect()
+}
+
+/// A shape, and whether it hides nothing of itself ([`is_convex`]).
+fn screen(scene: &Scene, id: ShapeId) -> (ShapeId, bool) {
+    (id, is_convex(&scene.bvh().shapes()[id as usize]))
+}
+
+/// Whether a shape may hide any of these surfaces from a wall.
+fn may_hide(scene: &Scene, (id, convex): (ShapeId, bool), (wall, hidden): (&End, &[End])) -> bool {
+    let mut others = hidden.iter().filter(|(own, _)| *own != Some(id) || !convex);
+    others.any(|surface| may_part(scene, id, [wall, surface]))
+}
+
+/// Whether a shape may stand between two regions.
+fn may_part(scene: &Scene, id: ShapeId, [(s, a), (t, b)]: [&End; 2]) -> bool {
+    scene.bvh().may_block(id, a, b, [*s, *t])
 }
 
 /// Whether it is a mesh with no vertex in front of any of its triangles, so that it hides nothing
@@ -141,6 +140,13 @@ fn is_convex(shape: &Shape) -> bool {
 
 /// A region of a surface, or a device.
 type End = (Option<ShapeId>, Region);
+
+/// These surfaces of a scene.
+fn around<'a>(scene: &Scene, all: impl Iterator<Item = (usize, &'a Surface)>) -> Vec<End> {
+    let shapes = scene.bvh().shapes();
+    all.map(|(id, _)| (Some(id as ShapeId), Region::around(&shapes[id])))
+        .collect()
+}
 
 /// What the camera sees of one flat wall, if it sees nothing else.
 fn seen_walls(scene: &Scene) -> Option<Vec<End>> {
