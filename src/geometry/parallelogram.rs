@@ -89,6 +89,12 @@ impl Parallelogram {
         [c, c + self.u, c + self.u + self.v, c + self.v]
     }
 
+    /// The ends of its four sides, from corner to corner in their order.
+    pub fn sides(&self) -> [[DVec3; 2]; 4] {
+        let [a, b, c, d] = self.corners();
+        [[a, b], [b, c], [c, d], [d, a]]
+    }
+
     /// Cosine of the angle between u and v; 0 for a rectangle.
     pub fn skew(&self) -> f64 {
         self.u.dot(self.v) / (self.u.length() * self.v.length())

@@ -142,16 +142,12 @@ fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64;
             .map(|at| at.map(|x| BEYOND * reach * (2.0 * x - 1.0)))
             .to_vec(),
     ];
-    let edges = scene.relays().flat_map(|(_, wall)| {
-        let corners = match &wall.shape {
-            Shape::Parallelogram(wall) => wall.corners().map(|c| c - laser).to_vec(),
-            _ => Vec::new(),
-        };
-        let next = corners.iter().cycle().skip(1);
-        let sides = corners.iter().zip(next).map(|(a, b)| a.cross(*b));
-        sides.collect::<Vec<DVec3>>()
+    let sides = scene.relays().filter_map(|(_, wall)| match &wall.shape {
+        Shape::Parallelogram(wall) => Some(wall.sides()),
+        _ => None,
     });
-    for edge in edges {
+    for [a, b] in sides.flatten() {
+        let edge = (a - laser).cross(b - laser);
         let height = |at: [f64; 2]| edge.dot(aim(at));
         let [middle, along, up] = [[0.0; 2], [1.0, 0.0], [0.0, 1.0]].map(height);
         let slope = libm::hypot(along - middle, up - middle);

@@ -58,10 +58,7 @@ impl Edges {
 /// Where what is seen of a wall may jump.
 fn sides(wall: &Surface) -> Vec<[DVec3; 2]> {
     match &wall.shape {
-        Shape::Parallelogram(p) => {
-            let corners = p.corners();
-            (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect()
-        }
+        Shape::Parallelogram(p) => p.sides().to_vec(),
         Shape::Instance(body) => body.folds().collect(),
         Shape::Disc(_) | Shape::Sphere(_) => Vec::new(),
     }
