@@ -130,9 +130,10 @@ pub(in crate::recovery) fn recover(
     let whole = gains.and_then(|gains| gains.whole.as_ref());
     let averaged = whole.filter(|_| averages).map(|of| 1.0 + of.size[0]);
     let widened = widened(&found, || {
-        let d = &linear.d * averaged.unwrap_or(1.0);
+        let scaled = averaged.map(|factor| &linear.d * factor);
+        let d = scaled.as_ref().unwrap_or(&linear.d);
         let known = base.with_scale_error(None);
-        let known = known.about(problem.phi, &d, &Soft::NONE);
+        let known = known.about(problem.phi, d, &Soft::NONE);
         let quick = Options {
             spreads: options.spreads,
             ..quick
