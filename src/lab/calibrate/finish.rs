@@ -63,19 +63,20 @@ impl CalibrationPlan {
             &moved * moved.transpose()
         };
         let enough_frames = problem.photographs.phi.ncols() > 2;
+        let (seen, given) = (problem.seen(best.factor), &best.slope.covariance);
+        let columns = seen.columns(&light, &best.value.rho, given, problem.unknowns())?;
+        let of = (&light, &columns[..]);
         let by = |group: Group| -> Result<Matrix, LabError> {
-            Ok(robust(&problem.left_out(
-                best,
-                &light,
-                &information,
-                group,
-            )?))
+            let scores = problem.left_out(best, of, &information, group)?;
+            Ok(robust(&scores))
         };
         let by_frames = (more_than_noise && enough_frames).then(|| by(Group::Frame));
         let by_frames = by_frames.transpose()?;
         // Along the cosines there are no blocks of pixels.
         let by_blocks = (more_than_noise && field.is_none()).then(|| by(Group::Block));
         let by_blocks = by_blocks.transpose()?;
+        let light_left_out = problem.light_left_out(best, of, &information)?;
+        drop(columns);
         let scene = problem.geometry.scene;
         let names = self.names(problem);
         let by_pictures = problem.by_pictures(best, &light)?;
@@ -161,7 +162,7 @@ impl CalibrationPlan {
             finer_elements: elements,
             untold,
             beforehand: Beforehand::of(&found[..problem.geometry.parameters.len()], &covariance),
-            light_left_out: problem.light_left_out(best, &light, &information)?,
+            light_left_out,
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),

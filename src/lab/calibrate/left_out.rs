@@ -50,13 +50,11 @@ impl Problem<'_> {
     pub(super) fn left_out(
         &self,
         best: &State,
-        light: &Light,
+        (light, columns): (&Light, &[Columns]),
         information: &Cholesky,
         group: Group,
     ) -> Result<Matrix, LabError> {
-        let seen = self.seen(best.factor);
-        let (rho, covariance) = (&best.value.rho, &best.slope.covariance);
-        let columns = seen.columns(light, rho, covariance, self.unknowns())?;
+        let (seen, rho) = (self.seen(best.factor), &best.value.rho);
         let half = best.value.factor.forward(best.prior.root.transpose());
         let rows = |(l, own): (usize, &Columns)| -> Result<Rows, LabError> {
             let [y, a] = seen.frame(light, l)?;

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use super::descent::{Problem, State};
 use super::geometry::Light;
+use super::posterior::Columns;
 use crate::lab::certainty::Errors;
 use crate::lab::error::LabError;
 use crate::lab::over_view::over_view;
@@ -68,7 +69,7 @@ impl Problem<'_> {
     pub(super) fn light_left_out(
         &self,
         best: &State,
-        light: &Light,
+        (light, columns): (&Light, &[Columns]),
         information: &Cholesky,
     ) -> Result<Vec<LightLeftOut>, LabError> {
         let known = self.photographs.certainty;
@@ -76,7 +77,7 @@ impl Problem<'_> {
         if !is_own || self.cosines.is_some() || self.common.is_some() {
             return Ok(Vec::new());
         }
-        let sums = self.sums(best, light)?;
+        let sums = self.sums(best, (light, columns))?;
         let towards = information.forward(sums.geometry.clone());
         let picture = product(&best.slope.covariance, &sums.light);
         let f = &sums.own - tr_product(&sums.light, &picture) - tr_product(&towards, &towards);
@@ -98,10 +99,9 @@ impl Problem<'_> {
         Ok(KINDS.iter().filter_map(of).collect())
     }
 
-    fn sums(&self, best: &State, light: &Light) -> Result<Sums, LabError> {
+    fn sums(&self, best: &State, (light, b): (&Light, &[Columns])) -> Result<Sums, LabError> {
         let seen = self.seen(best.factor);
         let (rho, columns) = (&best.value.rho, self.geometry.scene.camera.columns);
-        let b = seen.columns(light, rho, &best.slope.covariance, self.unknowns())?;
         let (n, all) = (light.elements(), KINDS[1].2.end);
         let mut sums = Sums {
             own: Matrix::zeros(all, all),
