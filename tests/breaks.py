@@ -531,7 +531,7 @@ BREAKS = [
     ),
     Break(
         "A mask along the elements is modelled to 1e-3",
-        "src/model/occlusion.rs",
+        "src/model/occlusion/seen.rs",
         "self.opaque.from(cell.viewpoint, own, self.scene.bvh())",
         "self.opaque.from(cell.point.position, own, self.scene.bvh())",
         "physics",
@@ -1341,11 +1341,11 @@ BREAKS = [
     ),
     Break(
         "A mark that was misread is named",
-        "src/photographs/warnings.rs",
+        "src/photographs/misplaced.rs",
         "error > MISREAD",
         "error > 100.0 * MISREAD",
         "lib",
-        "photographs::warnings::tests::a_mark_that_was_misread_is_named",
+        "photographs::misplaced::tests::a_mark_that_was_misread_is_named",
         10,
     ),
     Break(
@@ -1359,7 +1359,7 @@ BREAKS = [
     ),
     Break(
         "What is free twice, known differently well, is refused",
-        "src/lab/calibrate.rs",
+        "src/lab/calibrate/free.rs",
         "Some(k) if priors[k] != free.sigma",
         "Some(k) if priors[k] > free.sigma",
         "cli",
@@ -2227,7 +2227,7 @@ BREAKS = [
         "each.min_by(|a, b| a.others.total_cmp(&b.others))",
         "each.max_by(|a, b| a.others.total_cmp(&b.others))",
         "lib",
-        "photographs::warnings::tests::a_mark_that_was_misread_is_named",
+        "photographs::misplaced::tests::a_mark_that_was_misread_is_named",
         20,
     ),
     Break(

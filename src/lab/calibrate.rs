@@ -56,6 +56,7 @@ mod describe;
 mod elements;
 mod field;
 mod finish;
+mod free;
 mod geometry;
 mod identified;
 mod left_out;
@@ -72,6 +73,7 @@ pub use beforehand::Beforehand;
 pub use calibration::{Calibrated, Calibration, Starts};
 pub use descent::Stage;
 pub use elements::FinerElements;
+pub use free::Free;
 pub use identified::{Direction, Identified};
 pub use light_left_out::LightLeftOut;
 pub use profile::Profile;
@@ -92,19 +94,8 @@ use identified::identified;
 
 /// Below this probability of so bad a fit by noise alone more than noise is left.
 const LEVEL: f64 = 1e-3;
-/// The least that a parameter may be known to: its square has to be a number.
-const LEAST: f64 = 1e-12;
 /// Typical sizes of angles (degrees), percents, lengths over the distance to the view, and gains.
 const TYPICAL: [f64; 4] = [1.0, 1.0, 0.01, 0.01];
-
-/// A parameter that is free, and how well it is known beforehand.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Free {
-    /// Name of one or several parameters.
-    pub name: String,
-    /// Standard deviation of each, in its unit; none where nothing is known.
-    pub sigma: Option<f64>,
-}
 
 /// How the geometry is to be estimated.
 #[derive(Clone, Debug)]
@@ -177,7 +168,7 @@ impl CalibrationPlan {
         photographs: &Unexplained<'_>,
         control: Control<'_>,
     ) -> Result<Calibration, LabError> {
-        let (parameters, mut priors) = self.parameters(scene)?;
+        let (parameters, mut priors) = free::parameters(scene, &self.free)?;
         let frames = photographs.phi.ncols();
         let gains = if self.frame_gain.is_some() { frames } else { 0 };
         priors.extend(std::iter::repeat_n(self.frame_gain, gains));
@@ -267,44 +258,6 @@ impl CalibrationPlan {
         } else {
             Ok(End::new(problem, state, stages))
         }
-    }
-
-    fn parameters(&self, scene: &Scene) -> Result<(Vec<Parameter>, Vec<Option<f64>>), LabError> {
-        let (mut parameters, mut priors): (Vec<Parameter>, Vec<Option<f64>>) = Default::default();
-        for free in &self.free {
-            if free
-                .sigma
-                .is_some_and(|s| !(LEAST..=1.0 / LEAST).contains(&s))
-            {
-                return Err(LabError::Untold(format!(
-                    "{} is known to {:e}: give a standard deviation from {LEAST:e} to {:e}, or none",
-                    free.name,
-                    free.sigma.unwrap_or_default(),
-                    1.0 / LEAST
-                )));
-            }
-            for own in Parameter::named(scene, &free.name)? {
-                match parameters.iter().position(|p| p.name == own.name) {
-                    None => {
-                        parameters.push(own);
-                        priors.push(free.sigma);
-                    }
-                    Some(k) if priors[k] != free.sigma => {
-                        return Err(LabError::Untold(format!(
-                            "{} is free twice, known differently well: name it once",
-                            own.name
-                        )));
-                    }
-                    Some(_) => {}
-                }
-            }
-        }
-        if parameters.is_empty() {
-            return Err(LabError::Unsuited(
-                "nothing is free; name parameters with --free, or give the scene a table [uncertainty]",
-            ));
-        }
-        Ok((parameters, priors))
     }
 
     /// Where start k begins.

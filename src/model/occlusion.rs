@@ -12,18 +12,17 @@
 //! cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray. How finely
 //! footprints and spots are divided for this is up to [`super::divided`].
 
+mod lit;
+mod seen;
+
 use rayon::prelude::*;
 
 use super::beam::{Lit, reached};
 use super::blocks::Blocks;
-use super::cells::{HiddenCell, middles};
-use super::cut::exitance;
-use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
+use super::kernel::Kernel;
 use super::parts::Footprints;
 use super::patch::{Patch, triangles};
-use super::wall_point::{self, WallPoint};
-use crate::geometry::{Blockers, DVec3, Hidden, Opaque, Pieces, Ray, ShapeId, area_and_middle};
-use crate::matrix::Matrix;
+use crate::geometry::{Blockers, DVec3, Opaque, Ray, ShapeId, area_and_middle};
 use crate::scene::Scene;
 
 /// Light with nothing in the way, and past what is.
@@ -153,90 +152,6 @@ impl<'a> Obstructed<'a> {
         if self.by_rays() { 8e6 } else { 1e8 }
     }
 
-    /// What each cell sends to each pixel, by its middle, past what hides the wall from its
-    /// viewpoint: c_p.
-    pub(super) fn camera(&self, cells: &[HiddenCell]) -> Vec<Vec<Both>> {
-        let all = self.unobstructed(cells);
-        let each = cells.iter().zip(all.row_iter());
-        each.map(|(cell, all)| self.past(cell, all.iter().map(|all| [*all; 2]).collect()))
-            .collect()
-    }
-
-    /// Takes what is hidden from `found`, all that a cell sends to each pixel.
-    fn past(&self, cell: &HiddenCell, mut found: Vec<Both>) -> Vec<Both> {
-        let hidden = self.hidden_from(cell);
-        let mut pieces = Pieces::default();
-        self.blocks.visit(&hidden, &mut |p, met| {
-            found[p][1] = match met {
-                None => 0.0,
-                Some(met) => {
-                    let each = self.pixels[p].iter();
-                    each.map(|patch| self.seen_past(patch, (cell, &hidden), met, &mut pieces))
-                        .sum()
-                }
-            }
-        });
-        found
-    }
-
-    /// What each cell sends to each pixel with nothing in the way, to the middles of its parts,
-    /// cells × pixels.
-    pub(super) fn unobstructed(&self, cells: &[HiddenCell]) -> Matrix {
-        let middles = middles(cells);
-        let parts = self.pixels.iter();
-        let parts = parts.map(|patches| patches.iter().map(|patch| &patch.whole));
-        let points = HiddenPoints::new(&middles);
-        wall_point::sides((self.scene, self.kernel), &points, parts)
-    }
-
-    /// What hides the wall from the viewpoint of a cell.
-    pub(super) fn hidden_from(&self, cell: &HiddenCell) -> Hidden {
-        let own = Some(cell.surface);
-        self.opaque.from(cell.viewpoint, own, self.scene.bvh())
-    }
-
-    /// What a patch of the wall sends past everything.
-    fn seen_past(
-        &self,
-        patch: &Patch,
-        (cell, hidden): (&HiddenCell, &Hidden),
-        met: &[usize],
-        pieces: &mut Pieces,
-    ) -> f64 {
-        let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point);
-        let whole = towards(&patch.whole);
-        let (Some(wall), true) = (patch.whole.surface, whole != 0.0) else {
-            return 0.0;
-        };
-        let to = (cell.surface, cell.viewpoint);
-        let Some(corners) = &patch.corners else {
-            let open = patch.open && self.is_free(patch.whole.position, to, wall, &Blockers::Any);
-            return if open { whole } else { 0.0 };
-        };
-        let asked = hidden.asked(corners, patch.unasked);
-        let seen = patch.seen.iter().map(Vec::as_slice);
-        let shadows = met.iter().map(|s| &hidden.shadows[*s]);
-        if !pieces.past(seen, corners, shadows) && patch.open && asked.none() {
-            return whole;
-        }
-        let light = |(area, middle): (f64, DVec3)| {
-            if area > 0.0 {
-                towards(&wall_point::seen_piece(
-                    self.scene,
-                    &patch.whole,
-                    middle,
-                    area,
-                ))
-            } else {
-                0.0
-            }
-        };
-        let on_wall = |middle| wall_point::on_wall(self.scene, &patch.whole, middle);
-        let free = |middle| self.is_free(on_wall(middle), to, wall, &asked);
-        let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
-        pieces.iter().map(over).sum()
-    }
-
     /// Whether nothing of `blockers` stands between a point of the first surface and the place on
     /// the other.
     fn is_free(
@@ -251,98 +166,6 @@ impl<'a> Obstructed<'a> {
                 let ends = [Some(wall), Some(to.0)];
                 !self.scene.bvh().blocked_by(blockers, &ray, ends)
             })
-    }
-
-    /// What arrives of spot `spot` on each of the cells: d_l times the cell's area/π.
-    pub(super) fn laser(&self, spot: usize, cells: &[HiddenCell]) -> Vec<Both> {
-        let each = self.laser_and_viewpoints(spot, cells).into_iter();
-        each.map(|[all, left, _]| [all, left]).collect()
-    }
-
-    /// The same, and what arrived if each lit point saw all of a cell or nothing, as it sees its
-    /// viewpoint.
-    pub(super) fn laser_and_viewpoints(&self, spot: usize, cells: &[HiddenCell]) -> Vec<[f64; 3]> {
-        if self.scene.laser.is_shining() {
-            let shines = |c: &HiddenCell| exitance(self.scene, spot, c.point.position);
-            let light = |c: &HiddenCell| [shines(c).unwrap_or(0.0) * c.area; 3];
-            return cells.iter().map(light).collect();
-        }
-        let mut found = vec![[0.0; 3]; cells.len()];
-        for lit in &self.lit[spot] {
-            self.add_lit(lit, cells, &mut found);
-        }
-        found
-    }
-
-    /// Adds to these what a part of a spot sends to each of the cells.
-    fn add_lit(&self, lit: &Lit, cells: &[HiddenCell], found: &mut [[f64; 3]]) {
-        let mut pieces = Pieces::default();
-        let bvh = self.scene.bvh();
-        let Lit { whole, left } = lit;
-        let is_whole = whole == left;
-        let hidden = self.opaque.from(left.position, left.surface, bvh);
-        for (sums, cell) in found.iter_mut().zip(cells) {
-            let sent = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point) * cell.area;
-            let all = sent(whole);
-            sums[0] += all;
-            let arriving = if is_whole { all } else { sent(left) };
-            if arriving != 0.0 {
-                let [past, at_viewpoint] =
-                    self.lit_past(left, &hidden, cell, arriving, &mut pieces);
-                sums[1] += past;
-                sums[2] += at_viewpoint;
-            }
-        }
-    }
-
-    /// What a point of the wall, if it is lit, sends to each of the cells past everything.
-    pub(super) fn lit_by(&self, wall: &WallPoint, cells: &[HiddenCell]) -> Vec<f64> {
-        let mut found = vec![[0.0; 3]; cells.len()];
-        self.add_lit(&Lit::free(*wall), cells, &mut found);
-        found.iter().map(|[_, left, _]| *left).collect()
-    }
-
-    /// What of `all` arrives on a cell past everything, and what did if its viewpoint stood for it.
-    fn lit_past(
-        &self,
-        wall: &WallPoint,
-        hidden: &Hidden,
-        cell: &HiddenCell,
-        all: f64,
-        pieces: &mut Pieces,
-    ) -> [f64; 2] {
-        let Some(id) = wall.surface else {
-            return [0.0; 2];
-        };
-        let is_free =
-            |to, blockers: &Blockers| self.is_free(wall.position, (cell.surface, to), id, blockers);
-        let Some(corners) = &cell.corners else {
-            let free = is_free(cell.point.position, &Blockers::Any);
-            return if free { [all; 2] } else { [0.0; 2] };
-        };
-        let asked = hidden.asked(corners, None);
-        if !pieces.past([&**corners], corners, &hidden.shadows) && asked.none() {
-            return [all; 2];
-        }
-        let (whole, _) = area_and_middle(corners);
-        let light = |(area, middle): (f64, DVec3)| {
-            let point = HiddenPoint {
-                position: middle,
-                ..cell.point
-            };
-            wall.towards(self.scene, self.kernel, &point) * cell.area * (area / whole)
-        };
-        let free = |middle| is_free(middle, &asked);
-        let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
-        let left = pieces.iter().map(over).sum();
-        let mut shadows = hidden.shadows.iter();
-        let dark = shadows.any(|s| s.covers_box(cell.viewpoint, DVec3::ZERO));
-        let at_viewpoint = if dark || !free(cell.viewpoint) {
-            0.0
-        } else {
-            all
-        };
-        [left, at_viewpoint]
     }
 }
 

@@ -8,6 +8,7 @@ use super::error::{PhotographError, refused};
 use super::flicker::Flicker;
 use super::left_out::LeftOut;
 use super::list::{place, positions, tables};
+use super::misplaced::{elsewhere, mirrored, misread, outside, stretched};
 use super::noise::{contradicted, photon_transfer};
 use super::placing::{OFF_PLANE, Placing};
 use super::read::Reader;
@@ -15,8 +16,8 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, colourless, copied, elsewhere, flickers, little_left, mirrored, misread,
-    misstated, no_light, outside, roughly, rounded, shared, stretched, unsaid,
+    bent, by_own_light, colourless, copied, flickers, little_left, misstated, no_light, roughly,
+    rounded, shared, unsaid,
 };
 use crate::scene::{Scene, SceneError};
 

@@ -34,6 +34,7 @@ pub mod left_out;
 mod lens;
 mod list;
 mod mapping;
+mod misplaced;
 pub mod noise;
 mod pattern;
 mod placing;
