@@ -310,7 +310,7 @@ BREAKS = [
         "fits: p >= FIT_LEVEL,",
         "fits: true,",
         "lib",
-        "lab::doubt::tests::every_method_warns_of_photographs_that_are_not_of_this_scene",
+        "lab::doubt::tests::misfit::every_method_warns_of_photographs_that_are_not_of_this_scene",
         2,
     ),
     Break(
@@ -742,7 +742,7 @@ BREAKS = [
         "let own = |mtf: Option<f64>| mtf.filter(|m| *m > 0.0).unwrap_or(1.0);",
         "let own = |_: Option<f64>| 1.0;",
         "lib",
-        "lab::noise::tests::a_mean_that_strays_has_not_fallen",
+        "lab::noise::tests::lost::a_mean_that_strays_has_not_fallen",
         6,
     ),
     Break(
@@ -1138,7 +1138,7 @@ BREAKS = [
         "(times > LARGER || alone.is_some())",
         "(times > 100.0 * LARGER)",
         "lib",
-        "lab::doubt::tests::how_alike_elements_are_is_told_or_not",
+        "lab::doubt::tests::errors::how_alike_elements_are_is_told_or_not",
         9,
     ),
     Break(
@@ -1147,7 +1147,7 @@ BREAKS = [
         "misfit } if misfit > ROUGH)",
         "misfit } if misfit > 100.0 * ROUGH)",
         "lib",
-        "lab::doubt::tests::errors_of_any_form_refute_nothing",
+        "lab::doubt::tests::errors::errors_of_any_form_refute_nothing",
         9,
     ),
     Break(
@@ -1327,7 +1327,7 @@ BREAKS = [
         "far > FAR && self.far.len() <= MOST_FAR",
         "far < FAR && self.far.len() <= MOST_FAR",
         "lib",
-        "lab::doubt::tests::an_entry_that_noise_does_not_explain_is_named",
+        "lab::doubt::tests::misfit::an_entry_that_noise_does_not_explain_is_named",
         10,
     ),
     Break(
@@ -1336,7 +1336,7 @@ BREAKS = [
         "|ahead| ahead > SETTLES",
         "|ahead| -ahead > SETTLES",
         "lib",
-        "lab::doubt::tests::pictures_that_contradict_each_other_are_told",
+        "lab::doubt::tests::contested::pictures_that_contradict_each_other_are_told",
         10,
     ),
     Break(
@@ -1453,7 +1453,7 @@ BREAKS = [
         "**share < UNSEEN && **rho > 1.0",
         "**share > 1.0 && **rho > 1.0",
         "lib",
-        "lab::doubt::tests::an_element_that_is_not_seen_is_told",
+        "lab::doubt::tests::errors::an_element_that_is_not_seen_is_told",
         10,
     ),
     Break(
@@ -1669,7 +1669,7 @@ BREAKS = [
         "own == Method::JointGp && rival.ahead",
         "own == Method::JointUnbounded && rival.ahead",
         "lib",
-        "lab::doubt::tests::pictures_that_contradict_each_other_are_told",
+        "lab::doubt::tests::contested::pictures_that_contradict_each_other_are_told",
         11,
     ),
     Break(
@@ -2371,7 +2371,7 @@ BREAKS = [
         "let times = student_threshold(SURELY, spread.draws as f64 - 1.0);",
         "let times = student_threshold(SURELY, 1e9 * spread.draws as f64);",
         "lib",
-        "lab::noise::tests::a_mean_that_strays_has_not_fallen",
+        "lab::noise::tests::lost::a_mean_that_strays_has_not_fallen",
         23,
     ),
     Break(
@@ -2614,7 +2614,7 @@ BREAKS = [
         "1 => \", as one draw tells no mean\",",
         "1 => \"\",",
         "lib",
-        "lab::noise::tests::of_one_draw_nothing_is_said_to_be_held",
+        "lab::noise::tests::lost::of_one_draw_nothing_is_said_to_be_held",
         27,
     ),
     Break(
@@ -2839,7 +2839,7 @@ BREAKS = [
         "(self.integration, Effort::USUAL)",
         "(Integration::Centres, Effort::USUAL)",
         "lib",
-        "lab::noise::tests::the_bound_is_that_of_integrated_light",
+        "lab::noise::tests::bound::the_bound_is_that_of_integrated_light",
         32,
     ),
     Break(
@@ -2857,7 +2857,7 @@ BREAKS = [
         "let exact = match best.possible.left_out {",
         "let exact = match 0 * best.possible.left_out {",
         "lib",
-        "lab::doubt::tests::a_wrong_entry_without_an_error_is_among_the_cures",
+        "lab::doubt::tests::misfit::a_wrong_entry_without_an_error_is_among_the_cures",
         32,
     ),
     Break(
