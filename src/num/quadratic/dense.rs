@@ -15,7 +15,7 @@ const GAP: f64 = 1e-12;
 /// What stands for zero where a positive number is needed.
 const LEAST: f64 = 1e-12;
 /// Share of the way to the nearest bound that is gone.
-const STEP: f64 = 0.995;
+pub(super) const STEP: f64 = 0.995;
 
 /// Solves min ½‖R x − d‖², 0 ≤ x ≤ u, by Mehrotra's predictor and corrector (Nocedal and Wright
 /// 2006, algorithm 16.4). With multipliers z of x ≥ 0 and w of s = u − x ≥ 0 each step solves
@@ -100,14 +100,7 @@ impl<'a> State<'a> {
         let s = u.zip_map(&x, |u, x| if u.is_finite() { x } else { u });
         let gradient = r.tr_mul(&(r * &x - &d));
         let mean = (gradient.lp_norm(1) / n as f64).max(LEAST);
-        let z = gradient.map(|g| g.max(0.0) + mean);
-        let w = DVector::from_fn(n, |j, _| {
-            if s[j].is_finite() {
-                (-gradient[j]).max(0.0) + mean
-            } else {
-                0.0
-            }
-        });
+        let [z, w] = multipliers(&gradient, &s, mean);
         Self {
             r,
             d,
@@ -143,7 +136,6 @@ impl<'a> State<'a> {
     /// One predictor and corrector; `false` where no progress is possible.
     fn step(&mut self) -> bool {
         let n = self.x.len();
-        let over = |a: f64, s: f64| if s.is_finite() { a / s } else { 0.0 };
         let theta = DVector::from_fn(n, |j, _| self.z[j] / self.x[j] + over(self.w[j], self.s[j]));
         let scaled = columns_over(self.r.clone(), &theta.map(f64::sqrt));
         let mut inner = DMatrix::identity(self.r.nrows(), self.r.nrows());
@@ -156,8 +148,8 @@ impl<'a> State<'a> {
             let along = inner.solve(&(self.r * &y));
             y - self.r.tr_mul(&along).component_div(&theta)
         };
-        let times = |v: &DVector<f64>| self.r.tr_mul(&(self.r * v)) + theta.component_mul(v);
-        let solve = |b: &DVector<f64>| conjugate(b, times, once);
+        let whole = |v: &DVector<f64>| self.r.tr_mul(&(self.r * v)) + theta.component_mul(v);
+        let solve = |b: &DVector<f64>| conjugate(b, whole, once);
         let off = &self.gradient - &self.z + &self.w;
         // Directions for x z + p = 0 and s w + q = 0.
         let towards = |p: &DVector<f64>, q: &DVector<f64>| {
@@ -167,22 +159,14 @@ impl<'a> State<'a> {
             let dw = DVector::from_fn(n, |j, _| over(self.w[j] * dx[j] - q[j], self.s[j]));
             (dx, dz, dw)
         };
-        let room = |x: &DVector<f64>, dx: &DVector<f64>| {
-            let each = x.iter().zip(dx.iter()).filter(|(_, d)| **d < 0.0);
-            each.map(|(x, d)| -x / d).fold(1.0, f64::min)
-        };
         let most = |(dx, dz, dw): &(DVector<f64>, DVector<f64>, DVector<f64>)| {
-            let primal = room(&self.x, dx).min(room(&self.s, &-dx));
-            primal.min(room(&self.z, dz)).min(room(&self.w, dw))
+            let primal = room(&self.x, dx, 1.0).min(room(&self.s, dx, -1.0));
+            primal
+                .min(room(&self.z, dz, 1.0))
+                .min(room(&self.w, dw, 1.0))
         };
         let p = self.x.component_mul(&self.z);
-        let q = DVector::from_fn(n, |j, _| {
-            if self.s[j].is_finite() {
-                self.s[j] * self.w[j]
-            } else {
-                0.0
-            }
-        });
+        let q = self.s.zip_map(&self.w, times);
         let guess = towards(&p, &q);
         let a = most(&guess);
         let mu = self.complementarity(&self.x, &self.z, &self.s, &self.w) / self.pairs();
@@ -213,6 +197,44 @@ impl<'a> State<'a> {
         self.gradient = self.r.tr_mul(&(self.r * &self.x - &self.d));
         true
     }
+}
+
+/// a/s; 0 where s is infinite.
+pub(super) fn over(a: f64, s: f64) -> f64 {
+    if s.is_finite() { a / s } else { 0.0 }
+}
+
+/// s·w; 0 where s is infinite.
+pub(super) fn times(s: f64, w: f64) -> f64 {
+    if s.is_finite() { s * w } else { 0.0 }
+}
+
+/// Multipliers of both bounds to begin with, as large as the gradient; 0 of an upper bound that is
+/// infinitely far.
+pub(super) fn multipliers(
+    gradient: &DVector<f64>,
+    s: &DVector<f64>,
+    mean: f64,
+) -> [DVector<f64>; 2] {
+    let upper = |g: f64, s: f64| {
+        if s.is_finite() {
+            (-g).max(0.0) + mean
+        } else {
+            0.0
+        }
+    };
+    [
+        gradient.map(|g| g.max(0.0) + mean),
+        gradient.zip_map(s, upper),
+    ]
+}
+
+/// How far along `sign`·dx all of x stay positive, at most 1.
+pub(super) fn room(x: &DVector<f64>, dx: &DVector<f64>, sign: f64) -> f64 {
+    let each = x.iter().zip(dx.iter()).map(|(x, d)| (x, sign * d));
+    each.filter(|(_, d)| *d < 0.0)
+        .map(|(x, d)| -x / d)
+        .fold(1.0, f64::min)
 }
 
 /// x of A x = b by conjugate gradients, preconditioned by an inverse that rounding disturbs: mostly

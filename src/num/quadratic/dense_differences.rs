@@ -3,14 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Bounds;
-use super::dense::conjugate;
+use super::dense::{STEP, conjugate, multipliers, over, room, times};
 use crate::num::linalg::{Cholesky, gram_product};
 
 /// Iterations, and the gap, relative to ½‖R‖² + ½‖d − R l‖², at which they end.
 const MOST_ITERATIONS: u32 = 80;
 const GAP: f64 = 1e-14;
-/// Share of the way to the nearest bound that is gone.
-const STEP: f64 = 0.995;
 /// Differences begin at this share of the room between the bounds.
 const OPEN: f64 = 0.1;
 
@@ -31,6 +29,26 @@ pub(super) struct Penalised<'a> {
     pub(super) bounds: &'a Bounds,
     pub(super) pairs: &'a [[usize; 2]],
     pub(super) lambda: f64,
+}
+
+impl Penalised<'_> {
+    /// T x.
+    pub(super) fn differences(&self, x: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(self.pairs.len(), |i, _| {
+            let [a, b] = self.pairs[i];
+            x[a] - x[b]
+        })
+    }
+
+    /// Tᵀ v.
+    pub(super) fn gathered(&self, v: &DVector<f64>) -> DVector<f64> {
+        let mut sum = DVector::zeros(self.r.ncols());
+        for (&[a, b], v) in self.pairs.iter().zip(v.iter()) {
+            sum[a] += v;
+            sum[b] -= v;
+        }
+        sum
+    }
 }
 
 /// Solves it by Mehrotra's predictor and corrector (Nocedal and Wright 2006, algorithm 16.4). With
@@ -97,14 +115,6 @@ struct Products {
     qb: DVector<f64>,
 }
 
-fn over(a: f64, s: f64) -> f64 {
-    if s.is_finite() { a / s } else { 0.0 }
-}
-
-fn times(s: f64, w: f64) -> f64 {
-    if s.is_finite() { s * w } else { 0.0 }
-}
-
 impl<'a> State<'a> {
     /// Begins in the middle of the box, the multipliers as large as the gradient.
     fn new(problem: &'a Penalised<'a>) -> Option<Self> {
@@ -144,14 +154,7 @@ impl<'a> State<'a> {
         });
         let gradient = r.tr_mul(&(r * (&bounds.lower + &y) - d));
         let mean = gradient.lp_norm(1) / n as f64 + f64::MIN_POSITIVE;
-        let z = gradient.map(|g| g.max(0.0) + mean);
-        let w = DVector::from_fn(n, |j, _| {
-            if s[j].is_finite() {
-                (-gradient[j]).max(0.0) + mean
-            } else {
-                0.0
-            }
-        });
+        let [z, w] = multipliers(&gradient, &s, mean);
         let apart = |[i, j]: [usize; 2]| bounds.lower[i] + y[i] - bounds.lower[j] - y[j];
         let open = |sign: f64| {
             DVector::from_iterator(
@@ -186,26 +189,10 @@ impl<'a> State<'a> {
             .zip_map(&self.b, |a, b| if a < b { lambda - a } else { b - lambda })
     }
 
-    /// T x.
-    fn differences(&self, x: &DVector<f64>) -> DVector<f64> {
-        let pairs = self.problem.pairs;
-        DVector::from_iterator(pairs.len(), pairs.iter().map(|[i, j]| x[*i] - x[*j]))
-    }
-
-    /// Tᵀ v.
-    fn gathered(&self, v: &DVector<f64>) -> DVector<f64> {
-        let mut sum = DVector::zeros(self.y.len());
-        for ([i, j], v) in self.problem.pairs.iter().zip(v.iter()) {
-            sum[*i] += v;
-            sum[*j] -= v;
-        }
-        sum
-    }
-
     /// Rᵀ(R x − d) − z + w + Tᵀ ν.
     fn off(&self) -> DVector<f64> {
         let Penalised { r, d, .. } = *self.problem;
-        r.tr_mul(&(r * self.x() - d)) - &self.z + &self.w + self.gathered(&self.pull())
+        r.tr_mul(&(r * self.x() - d)) - &self.z + &self.w + self.problem.gathered(&self.pull())
     }
 
     fn products(&self) -> Products {
@@ -240,21 +227,15 @@ impl<'a> State<'a> {
 
     /// How far along `by` all stay positive, at most 1.
     fn room(&self, by: &Direction) -> f64 {
-        let of = |x: &DVector<f64>, dx: &DVector<f64>, sign: f64| {
-            let each = x.iter().zip(dx.iter()).map(|(x, d)| (x, sign * d));
-            each.filter(|(_, d)| *d < 0.0)
-                .map(|(x, d)| -x / d)
-                .fold(1.0, f64::min)
-        };
         [
-            of(&self.y, &by.y, 1.0),
-            of(&self.s, &by.y, -1.0),
-            of(&self.z, &by.z, 1.0),
-            of(&self.w, &by.w, 1.0),
-            of(&self.p, &by.p, 1.0),
-            of(&self.q, &by.q, 1.0),
-            of(&self.a, &by.a, 1.0),
-            of(&self.b, &by.a, -1.0),
+            room(&self.y, &by.y, 1.0),
+            room(&self.s, &by.y, -1.0),
+            room(&self.z, &by.z, 1.0),
+            room(&self.w, &by.w, 1.0),
+            room(&self.p, &by.p, 1.0),
+            room(&self.q, &by.q, 1.0),
+            room(&self.a, &by.a, 1.0),
+            room(&self.b, &by.a, -1.0),
         ]
         .into_iter()
         .fold(1.0, f64::min)
@@ -280,10 +261,13 @@ impl<'a> State<'a> {
             return false;
         };
         let times = |v: &DVector<f64>| {
-            let held = self.differences(v).component_mul(&stiff);
-            &self.gram * v + theta.component_mul(v) + self.gathered(&held)
+            let held = self.problem.differences(v).component_mul(&stiff);
+            &self.gram * v + theta.component_mul(v) + self.problem.gathered(&held)
         };
-        let (off, lost) = (self.off(), self.differences(&self.x()) - &self.p + &self.q);
+        let (off, lost) = (
+            self.off(),
+            self.problem.differences(&self.x()) - &self.p + &self.q,
+        );
         let towards = |c: &Products| {
             let apart = DVector::from_fn(self.p.len(), |i, _| {
                 c.pa[i] / self.a[i] - c.qb[i] / self.b[i] + lost[i]
@@ -291,9 +275,9 @@ impl<'a> State<'a> {
             let bounds = DVector::from_fn(n, |j, _| {
                 over(c.sw[j], self.s[j]) - c.yz[j] / self.y[j] - off[j]
             });
-            let right = bounds - self.gathered(&apart.component_mul(&stiff));
+            let right = bounds - self.problem.gathered(&apart.component_mul(&stiff));
             let y = conjugate(&right, times, |b| inner.solve(b));
-            let pull = (self.differences(&y) + apart).component_mul(&stiff);
+            let pull = (self.problem.differences(&y) + apart).component_mul(&stiff);
             Direction {
                 z: DVector::from_fn(n, |j, _| -(c.yz[j] + self.z[j] * y[j]) / self.y[j]),
                 w: DVector::from_fn(n, |j, _| over(self.w[j] * y[j] - c.sw[j], self.s[j])),

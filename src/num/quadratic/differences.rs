@@ -52,7 +52,7 @@ pub fn fused_least_squares(
     lambda: f64,
     start: &DVector<f64>,
 ) -> Result<Fused, QuadraticError> {
-    let problem = Problem {
+    let problem = Penalised {
         r,
         d,
         bounds,
@@ -81,13 +81,9 @@ pub fn fused_least_squares(
             .max(usize::from(free_sets > 0));
     }
     let sets = problem.sets(&x).1.len();
-    let differences = DVector::from_fn(pairs.len(), |i, _| x[pairs[i][0]] - x[pairs[i][1]]);
+    let differences = problem.differences(&x);
     let penalty: f64 = differences.iter().map(|t| lambda * t.abs()).sum();
-    let mut pull = DVector::zeros(x.len());
-    for (&[a, b], &w) in pairs.iter().zip(interior.w.iter()) {
-        pull[a] += w;
-        pull[b] -= w;
-    }
+    let pull = problem.gathered(&interior.w);
     let residual = r * &x - d;
     let proved = certificate::gap(
         r,
@@ -117,14 +113,6 @@ pub fn fused_least_squares(
     })
 }
 
-struct Problem<'a> {
-    r: &'a DMatrix<f64>,
-    d: &'a DVector<f64>,
-    bounds: &'a Bounds,
-    pairs: &'a [[usize; 2]],
-    lambda: f64,
-}
-
 struct Interior {
     x: DVector<f64>,
     /// Multipliers of the differences, within ±λ.
@@ -143,7 +131,7 @@ struct Set {
     free: bool,
 }
 
-impl Problem<'_> {
+impl Penalised<'_> {
     fn objective(&self, x: &DVector<f64>) -> f64 {
         let penalty: f64 = self.pairs.iter().map(|&[a, b]| (x[a] - x[b]).abs()).sum();
         0.5 * (self.r * x - self.d).norm_squared() + self.lambda * penalty
@@ -169,7 +157,7 @@ impl Problem<'_> {
         if self.r.ncols() < LARGE {
             return None;
         }
-        let found = dense_differences::solve(&self.dense_form())?;
+        let found = dense_differences::solve(self)?;
         found.closed.then(|| Interior {
             y: self.r * &found.x - self.d,
             x: found.x,
@@ -177,16 +165,6 @@ impl Problem<'_> {
             status: "Solved".to_owned(),
             iterations: found.iterations,
         })
-    }
-
-    fn dense_form(&self) -> Penalised<'_> {
-        Penalised {
-            r: self.r,
-            d: self.d,
-            bounds: self.bounds,
-            pairs: self.pairs,
-            lambda: self.lambda,
-        }
     }
 
     fn interior(&self, start: &DVector<f64>) -> Result<Interior, QuadraticError> {

@@ -78,7 +78,7 @@ fn dense_matrices_end_where_the_conic_solver_ends() {
     for (upper, lambda) in [(1.0, 0.3), (1.0, 1e-4), (f64::INFINITY, 0.01)] {
         let bounds = Bounds::all(30, 0.0, upper);
         let start = box_least_squares(&r, &d, &bounds).unwrap().solution;
-        let problem = Problem {
+        let problem = Penalised {
             r: &r,
             d: &d,
             bounds: &bounds,
@@ -86,7 +86,7 @@ fn dense_matrices_end_where_the_conic_solver_ends() {
             lambda,
         };
         let exact = fused_least_squares(&r, &d, &bounds, &pairs, lambda, &start).unwrap();
-        let found = dense_differences::solve(&problem.dense_form()).unwrap();
+        let found = dense_differences::solve(&problem).unwrap();
         assert!(
             found.closed && found.iterations < 40,
             "{}",
