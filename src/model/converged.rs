@@ -44,9 +44,7 @@ impl Converged {
             .reduce(|a, b| if b.1 > a.1 { b } else { a });
         worst.map(|(i, share)| ([i % self.phi.nrows(), i / self.phi.nrows()], share))
     }
-}
 
-impl Converged {
     /// Refines the hidden surfaces and what the wall is taken at one without the other, each under
     /// the roughest rule of the other, where finer rules of both together have too many
     /// connections: Φ(h, w) ≈ Φ(l, l) + \[Φ(h, 0) − Φ(l, 0)\] + \[Φ(0, w) − Φ(0, l)\], l the last

@@ -76,7 +76,6 @@ pub(super) fn stack(
         .enumerate()
         .for_each(|(s, j)| terms[*j].push(s));
     let nuisance = &problem.nuisance;
-    let pattern = |p: usize, l: usize| nuisance.glare.map_or(0.0, |m| m[(p, l)]);
     let data = |p: usize, l: usize, j: usize| {
         root(p, l)
             * if j < elements {
@@ -88,12 +87,12 @@ pub(super) fn stack(
     let patterns = &nuisance.of_frames(pixels);
     // A frame's own columns: value at (p, l), and the length over the frame.
     let mut own: Vec<Box<dyn Fn(usize, usize) -> f64 + '_>> = Vec::new();
+    let root = &root;
     for k in 0..patterns.ncols() {
-        let root = &root;
         own.push(Box::new(move |p, l| root(p, l) * patterns[(p, k)]));
     }
-    if nuisance.glare.is_some() {
-        own.push(Box::new(|p, l| root(p, l) * pattern(p, l)));
+    if let Some(glare) = nuisance.glare {
+        own.push(Box::new(move |p, l| root(p, l) * glare[(p, l)]));
     }
     let lengths: Vec<Vec<f64>> = own
         .iter()
