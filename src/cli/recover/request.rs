@@ -119,8 +119,10 @@ impl RecoveryRequest<'_> {
         };
         let occlusion = args.occlusion.occlusion();
         let model = MatrixModel::without_photographs(scene, args.kernel, args.elements, occlusion)?;
-        self.console
-            .say("Φcam is read by rows: no covariance, no resolution, no Picard plot");
+        self.console.say(
+            "Φcam is read by rows: no covariance, resolution or bias, no Picard plot, and whether any reflectances \
+             explain it is not asked",
+        );
         let mut strips = Strips {
             model: &model,
             phi,
