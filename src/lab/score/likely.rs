@@ -16,6 +16,8 @@ use crate::num::statistics::sidak_threshold;
 
 /// Causes that are followed.
 const FOLLOWED: usize = 4;
+/// A cause that leaves more χ²/dof does not explain the difference.
+const EXPLAINED: f64 = 1.5;
 
 /// What χ² says of the model.
 #[derive(Clone, Copy)]
@@ -47,7 +49,9 @@ struct Cause {
 
 impl Causes<'_> {
     /// The most likely cause, of those `beyond` their limit the one that leaves the least χ², and
-    /// those of `all` that explain the difference as well; and what that cause changes.
+    /// those of `all` that explain the difference as well; and what that cause changes. Where the
+    /// best few by their first steps do not explain it, those are followed too that do best with
+    /// the light of the scene there: a model that bends is not told by its slope.
     pub(super) fn likely(
         &self,
         all: &[&Deviation],
@@ -57,9 +61,17 @@ impl Causes<'_> {
         let all = || all.iter().copied().filter(|d| d.is_within_reach(d.value));
         // A first step may go too far.
         beyond.sort_by(least);
-        let causes = beyond.iter().take(FOLLOWED).filter_map(|d| self.cause(d));
-        let mut causes: Vec<Cause> = causes.collect();
+        let (first, further) = beyond.split_at(FOLLOWED.min(beyond.len()));
+        let mut causes: Vec<Cause> = first.iter().filter_map(|d| self.cause(d)).collect();
         let chi2 = |cause: &Cause| cause.deviation.chi2_per_dof;
+        if !causes.iter().any(|cause| chi2(cause) < EXPLAINED) {
+            let of_scene = further.par_iter().filter(|d| d.spot.is_none());
+            let there = of_scene.filter_map(|d| Some((self.at_first_step(d)?, *d)));
+            let mut there: Vec<(f64, &Deviation)> = there.collect();
+            there.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let best = there.into_iter().take(FOLLOWED);
+            causes.extend(best.filter_map(|(_, d)| self.cause(d)));
+        }
         causes.sort_by(|a, b| chi2(a).total_cmp(&chi2(b)));
         let Some((best, others)) = causes.split_first() else {
             return (Vec::new(), None);
@@ -131,24 +143,32 @@ impl Causes<'_> {
         })
     }
 
-    /// The deviation where it leaves the least. A free scale would change with it.
+    /// What the model changes by a size of the deviation, and the derivative there. A free scale
+    /// would change with it.
+    fn moved(&self, d: &Deviation, size: f64) -> Option<[Matrix; 2]> {
+        let evidence = self.residual.evidence;
+        let is_free = evidence.eliminated.is_some_and(Eliminated::is_scale_free);
+        let inside = (!is_free && d.is_within_reach(size)).then_some(size)?;
+        let [change, derivative] = (self.derivatives.moved)(self.index(d)?, inside)?;
+        let of = |m: Matrix| whole(&evidence, &m, d.spot);
+        Some([of(change)?, of(derivative)?])
+    }
+
+    /// χ²/dof that the scene at the first step leaves, not its slope.
+    fn at_first_step(&self, d: &Deviation) -> Option<f64> {
+        let [change, _] = self.moved(d, d.value)?;
+        Some((self.remaining.after)(1.0, &change, &(0..change.ncols())))
+    }
+
+    /// The deviation where it leaves the least.
     fn bent(&self, d: &Deviation) -> Option<Cause> {
         let evidence = self.residual.evidence;
-        if evidence.eliminated.is_some_and(Eliminated::is_scale_free) {
-            return None;
-        }
-        let index = self.index(d)?;
         let all = 0..evidence.model.ncols();
         let columns = match (evidence.eliminated, d.spot) {
             (None, Some(l)) => l..l + 1,
             _ => all,
         };
-        let moved = |size: f64| {
-            let of = |m: Matrix| whole(&evidence, &m, d.spot);
-            let inside = d.is_within_reach(size).then_some(size)?;
-            let [change, derivative] = (self.derivatives.moved)(index, inside)?;
-            Some([of(change)?, of(derivative)?])
-        };
+        let moved = |size: f64| self.moved(d, size);
         let found = followed((self.residual, self.test), &columns, d.value, &moved)?;
         let deviation = Deviation {
             value: found.fit.value,
