@@ -164,27 +164,38 @@ pub(super) fn simultaneous(
         .filter(|&i| rows.row(i).iter().map(|x| x.abs()).sum::<f64>() > 1.0)
         .collect();
     let (rows, data) = (rows.select_rows(&seen), data.select_rows(&seen));
-    let whole = |j: usize| [bounds.lower[j], bounds.upper[j]];
-    let intervals = if seen.is_empty() {
-        (0..r.ncols()).map(whole).collect()
-    } else {
+    // An element below rounding can have any value, and changes no other.
+    let rounding = f64::EPSILON * r.nrows().max(r.ncols()) as f64 * decomposed.sigma.amax();
+    let lit: Vec<usize> = (0..r.ncols())
+        .filter(|&j| rows.column(j).norm() > rounding)
+        .collect();
+    let whole = bounds.lower.iter().zip(&bounds.upper);
+    let mut intervals: Vec<[f64; 2]> = whole.map(|(lower, upper)| [*lower, *upper]).collect();
+    if !lit.is_empty() {
+        let rows = rows.select_columns(&lit);
+        let bounds = &Bounds {
+            lower: bounds.lower.select_rows(&lit),
+            upper: bounds.upper.select_rows(&lit),
+        };
         let best = box_least_squares(&rows, &data, bounds)?;
         let room = chi_square_quantile(confidence, seen.len() as f64) - 2.0 * best.objective;
         if room < 0.0 {
             return Ok(Err(Bands::REFUTED));
         }
         let extents = Extents::new(&rows, &data, bounds, &best.solution, room)?;
-        let steps = Steps::new(control, 90, r.ncols());
-        let each = (0..r.ncols()).into_par_iter();
+        let steps = Steps::new(control, 90, lit.len());
+        let each = (0..lit.len()).into_par_iter();
         let of = |j| {
             let goes_on = steps.done().is_ok();
             goes_on.then(|| extents.of(j)).transpose()
         };
-        match each.map(of).collect::<Result<Option<_>, _>>()? {
-            Some(intervals) => intervals,
-            None => return Ok(Err(STOPPED)),
+        let Some(found) = each.map(of).collect::<Result<Option<Vec<_>>, _>>()? else {
+            return Ok(Err(STOPPED));
+        };
+        for (j, found) in lit.into_iter().zip(found) {
+            intervals[j] = found;
         }
-    };
+    }
     Ok(Ok(Bands {
         confidence,
         intervals,

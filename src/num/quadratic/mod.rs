@@ -125,10 +125,10 @@ enum Place {
 ///
 /// with R's columns scaled to unit length. Its answer tells which bounds hold; an active-set
 /// refinement (Stark and Parker's bounded-variable least squares, started there) then solves for
-/// the rest by QR to full precision, never raising the objective. The returned gap is the least
-/// that three dual points prove by weak duality: the residual R x − d, its part orthogonal to the
-/// columns of the variables between their bounds (which rounding of a large d disturbs least), and
-/// the solver's own y.
+/// the rest by QR to full precision, never raising the objective. A variable whose column is 0 stays
+/// at its lower bound. The returned gap is the least that three dual points prove by weak duality:
+/// the residual R x − d, its part orthogonal to the columns of the variables between their bounds
+/// (which rounding of a large d disturbs least), and the solver's own y.
 ///
 /// # Errors
 /// Empty or non-finite input, shapes that do not fit, bounds that no number keeps, or a gap above
@@ -186,6 +186,13 @@ pub fn box_least_squares_from(
     }
 }
 
+/// The variables whose column is 0.
+fn unseen(r: &DMatrix<f64>) -> Vec<usize> {
+    let each = r.column_iter().enumerate();
+    let dark = each.filter(|(_, column)| column.iter().all(|x| *x == 0.0));
+    dark.map(|(j, _)| j).collect()
+}
+
 /// The problem for x − l, its largest entry in [1, 2).
 struct Scaled {
     r: DMatrix<f64>,
@@ -217,7 +224,7 @@ impl Scaled {
             }
             .into());
         }
-        let width = &bounds.upper - &bounds.lower;
+        let mut width = &bounds.upper - &bounds.lower;
         if let Some(variable) =
             (0..n).find(|&j| !bounds.lower[j].is_finite() || width[j].is_nan() || width[j] < 0.0)
         {
@@ -226,6 +233,10 @@ impl Scaled {
                 lower: bounds.lower[variable],
                 upper: bounds.upper[variable],
             });
+        }
+        // What R does not see stays at its lower bound, however far it might go.
+        for j in unseen(r) {
+            width[j] = width[j].min(1.0);
         }
         let d = d - r * &bounds.lower;
         let scale = r.amax().max(d.amax());
@@ -240,9 +251,12 @@ impl Scaled {
     }
 
     /// Refines and certifies.
-    fn finish(&self, bounds: &Bounds, start: Interior) -> Result<BoxSolution, QuadraticError> {
+    fn finish(&self, bounds: &Bounds, mut start: Interior) -> Result<BoxSolution, QuadraticError> {
         let Scaled { r, d, width, .. } = self;
         let n = r.ncols();
+        for j in unseen(r) {
+            (start.x[j], start.places[j]) = (0.0, Place::Lower);
+        }
         let (x, refinements) = active_set::refine(r, d, width, start.x, start.places)?;
         let residual = r * &x - d;
         let orthogonal = active_set::orthogonal_to_free(r, &residual, width, &x)?;

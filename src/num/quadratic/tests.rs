@@ -156,3 +156,29 @@ fn degenerate_and_bad_input() {
         .is_err()
     );
 }
+
+/// A column of 0: its variable changes nothing and stays at its lower bound, whatever the upper one,
+/// by either solver.
+#[test]
+fn what_is_not_seen_stays_at_its_lower_bound() {
+    for (rows, n) in [(9, 5), (520, 510)] {
+        let mut r = DMatrix::from_fn(rows, n, |i, j| {
+            f64::from(u8::from(i == j)) + 0.1 * (((i * 31 + j * 17) % 13) as f64 - 6.0) / n as f64
+        });
+        r.column_mut(2).fill(0.0);
+        let d = DVector::from_fn(rows, |i, _| ((i * 7) % 5) as f64 - 1.0);
+        for top in [1.0, f64::INFINITY] {
+            let bounds = Bounds::all(n, 0.25, top);
+            let all = box_least_squares(&r, &d, &bounds).unwrap();
+            let seen = box_least_squares(
+                &r.clone().remove_column(2),
+                &d,
+                &Bounds::all(n - 1, 0.25, top),
+            )
+            .unwrap();
+            assert_eq!(all.solution[2], 0.25);
+            let off = (all.solution.remove_row(2) - seen.solution).amax();
+            assert!(off < 1e-9, "{n} {top}: {off:e}");
+        }
+    }
+}

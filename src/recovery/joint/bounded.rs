@@ -58,9 +58,11 @@ fn region(
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DVector;
+
     use super::*;
-    use crate::recovery::bench::{Bench, modulation, normal_stream};
-    use crate::recovery::recover;
+    use crate::recovery::bench::{Bench, modulation, normal_stream, relative_noise};
+    use crate::recovery::{Nuisance, recover};
 
     #[test]
     fn planted_boards_are_recovered_exactly_without_noise() {
@@ -156,6 +158,64 @@ mod tests {
         for method in [Method::JointUnbounded, Method::Joint] {
             let found = recover(method, &problem, &Options::default()).unwrap();
             assert!((found.reflectance - &board).amax() < 1e-9);
+        }
+    }
+
+    /// An element that no pixel sees, that no spot lights, or of less light than a rounding of the
+    /// others: the others are those of the problem without it, and their bands.
+    #[test]
+    fn an_element_without_light_takes_no_part() {
+        let mut normal = normal_stream(4);
+        let mut side = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 0.6 + 0.1 * normal());
+        let (c, d) = (side(20, 9), side(9, 12));
+        let rho = DVector::from_fn(8, |j, _| 0.1 + 0.1 * j as f64);
+        let without = (c.clone().remove_column(4), d.clone().remove_row(4));
+        let exact = &without.0 * DMatrix::from_diagonal(&rho) * &without.1;
+        let (phi, stderr) = relative_noise(&exact, 1e-2, 5);
+        let options = Options {
+            bands: Some(0.95),
+            ..Options::default()
+        };
+        let scaled = |light: f64, lit: f64| {
+            let (mut c, mut d) = (c.clone(), d.clone());
+            c.column_mut(4).scale_mut(light);
+            d.row_mut(4).scale_mut(lit);
+            (c, d)
+        };
+        for free_scale in [false, true] {
+            let nuisance = Nuisance {
+                free_scale,
+                ..Nuisance::default()
+            };
+            let of = |method, (c, d): &(DMatrix<f64>, DMatrix<f64>)| {
+                let problem = Problem::new(&phi, c, d, Some(&stderr)).unwrap();
+                recover(method, &problem.with_nuisance(nuisance).unwrap(), &options).unwrap()
+            };
+            for method in [Method::Nnls, Method::Joint] {
+                let alone = of(method, &without);
+                for sides in [scaled(0.0, 1.0), scaled(1.0, 0.0), scaled(1e-17, 1.0)] {
+                    let found = of(method, &sides);
+                    assert_eq!(found.reflectance[4], 0.0, "{method}");
+                    let others = found.reflectance.remove_row(4);
+                    let off = (others - &alone.reflectance).amax();
+                    assert!(off < 1e-12, "{method} {free_scale}: {off:e}");
+                    let (Some(own), Some(mut all)) = (&alone.bands, found.bands) else {
+                        assert!(free_scale);
+                        continue;
+                    };
+                    let top = if method == Method::Nnls {
+                        f64::INFINITY
+                    } else {
+                        1.0
+                    };
+                    assert_eq!(all.intervals.remove(4), [0.0, top]);
+                    for (own, other) in own.intervals.iter().zip(&all.intervals) {
+                        // Both ends of both are proved from outside, to what the solver reaches.
+                        assert!((own[0] - other[0]).abs() < 1e-6, "{own:?} {other:?}");
+                        assert!((own[1] - other[1]).abs() < 1e-6, "{own:?} {other:?}");
+                    }
+                }
+            }
         }
     }
 

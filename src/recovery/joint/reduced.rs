@@ -14,7 +14,8 @@ use crate::recovery::{
     Weighting,
 };
 
-/// ½‖R x/s₀ − d‖² is the objective but for a constant, x = s ρ and s₀ that of [`scale`].
+/// ½‖R x/s₀ − d‖² is the objective but for a constant, x = s ρ and s₀ that of [`scale`]. Columns of
+/// elements that are not seen are 0.
 pub(super) struct Reduced {
     operator: Arc<Operator>,
     pub(super) r: DMatrix<f64>,
@@ -45,9 +46,17 @@ impl Reduced {
         // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for
         // R.
         let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
+        // An element whose light is below what is cut is not seen: without an upper bound any size
+        // of it would serve to fit the noise by rounding.
+        let mut r = rows_times(vt.rows(0, rows) * unit, sigma);
+        for mut column in r.column_iter_mut() {
+            if column.norm() <= cutoff * unit {
+                column.fill(0.0);
+            }
+        }
         Ok(Reduced {
             operator,
-            r: rows_times(vt.rows(0, rows) * unit, sigma),
+            r,
             d: data.rows(0, rows).into_owned(),
             sigma: sigma.clone(),
             rank,
