@@ -81,6 +81,13 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
             told(&best.possible)
         ));
     }
+    if found.method.is_joint() && found.weighting == Weighting::Unweighted {
+        return Some(format!(
+            "{own}, and others explain them ({}): all entries weigh alike, whatever their noise. Leave --weighting \
+             to the noise",
+            told(&best.possible)
+        ));
+    }
     Some(format!(
         "{own}, and others explain them ({}): the method is at fault, not the photographs. {}",
         told(&best.possible),
@@ -109,9 +116,9 @@ fn cure(method: Method) -> &'static str {
              of one size, which is supposed where none is stated (--noise, --stderr): use joint, or give \
              the --levels"
         }
-        Method::Joint | Method::Nnls | Method::JointUnbounded | Method::JointGp => {
-            "Leave --weighting and --tolerance to the noise"
-        }
+        Method::JointUnbounded => "Keep more directions (--tolerance), or use joint",
+        Method::Joint => "Compare nnls and joint-unbounded",
+        Method::Nnls | Method::JointGp => "Use joint",
         _ => "It amplifies noise: use joint, or tsvd or tikhonov",
     }
 }
@@ -154,4 +161,71 @@ fn contradiction(best: &Attainable) -> String {
          --frame-constant, --background or --occluder-light for other light; --integration centres \
          where elements were taken at their centres, as `phicam model` does"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matrix::Matrix;
+    use crate::recovery::{Options, Problem, WeightRule, recover};
+
+    fn fit(chi2_per_dof: f64, fits: bool) -> Fit {
+        Fit {
+            chi2_per_dof,
+            dof: 10.0,
+            p: f64::from(u8::from(fits)),
+            entries: 12,
+            left_out: 0,
+            level: 1e-3,
+            fits,
+            within_integration: None,
+            outlier: None,
+            pooled: None,
+            neighbours: None,
+        }
+    }
+
+    /// Where another picture fits, "leave it" is said of no option that was not given.
+    #[test]
+    fn a_cure_takes_back_only_what_was_given() {
+        let side =
+            |rows, columns| Matrix::from_fn(rows, columns, |i, j| 1.0 + ((i * j) % 3) as f64);
+        let (c, d) = (side(4, 2), side(2, 3));
+        let phi = &c * &d;
+        let stderr = Matrix::from_element(4, 3, 0.1);
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        let judged = Judged {
+            fit: Some(fit(9.0, false)),
+            best: Some(Attainable {
+                possible: fit(1.0, true),
+                any: None,
+                brightness: 1.0,
+            }),
+            ..Judged::default()
+        };
+        let methods = [
+            Method::Joint,
+            Method::Nnls,
+            Method::JointUnbounded,
+            Method::Pinv,
+        ];
+        for method in methods {
+            for weighting in [WeightRule::Noise, WeightRule::Unweighted] {
+                let options = Options {
+                    weighting,
+                    ..Options::default()
+                };
+                let found = recover(method, &problem, &options).unwrap();
+                let told = misfit(&found, &judged).unwrap();
+                let is_taken_back = told.contains("Leave --weighting");
+                let was_given = weighting == WeightRule::Unweighted && method.is_joint();
+                assert_eq!(is_taken_back, was_given, "{method}: {told}");
+                assert_eq!(
+                    told.matches("Leave").count(),
+                    usize::from(was_given),
+                    "{told}"
+                );
+            }
+        }
+    }
 }
