@@ -211,11 +211,21 @@ fn meshes() -> Vec<Vec<u8>> {
     };
     // Its buffer is its own text: three triangles whose coordinates are what four letters make.
     let beside = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"uri":"a.bin","byteLength":108}],"bufferViews":[{"buffer":0,"byteLength":108}],"accessors":[{"bufferView":0,"componentType":5126,"count":9,"type":"VEC3"}]}"#;
+    // The same with a target whose weight is 0.
+    let moved = beside.replace(
+        r#"{"POSITION":0}}]}"#,
+        r#"{"POSITION":0},"targets":[{"POSITION":0}]}],"weights":[0]}"#,
+    );
     let zeros = "A".repeat(480);
     vec![
         of(0, &ply),
         of(0, text.as_bytes()),
         of(1, obj.as_bytes()),
+        of(
+            1,
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nfo 1 2 3\nsurf 0 1 0 1 1 2 3\ncall b.obj\n",
+        ),
+        of(2, moved.as_bytes()),
         of(
             2,
             json(&format!(

@@ -6,10 +6,12 @@
 //!
 //! All triangles of the default scene (the first if none is marked), in the places where its nodes
 //! put them; a node that mirrors keeps the front of its triangles. Not read: materials, images,
-//! skins, morph targets, animations.
+//! animations; refused: what moves the vertices or repeats a mesh besides, as skins, morph targets
+//! of non-zero weight and instances.
 
 mod accessor;
 mod buffer;
+mod deformed;
 mod glb;
 mod walk;
 
@@ -21,6 +23,7 @@ use glam::DMat4;
 use gltf_json::Root;
 use gltf_json::accessor::Type;
 use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::scene::Node;
 use gltf_json::validation::Checked;
 use std::collections::BTreeMap;
 use walk::Walk;
@@ -77,6 +80,12 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
             "as glTF 2.0",
         ));
     }
+    // It may be used without being required: who does not know it shows one of the copies.
+    let instances = "EXT_mesh_gpu_instancing";
+    if root.extensions_used.iter().any(|e| e == instances) {
+        let what = format!("extension `{instances}` (copies of one mesh)");
+        return Err(unsupported(what, "with its instances made real"));
+    }
     // Extensions that leave the shape alone.
     let harmless = [
         "KHR_materials_",
@@ -122,16 +131,17 @@ impl<'a> Body<'a> {
         let mut walk = Walk::new(self.root, scene)?;
         while let Some((node, placed)) = walk.next()? {
             if let Some(mesh) = node.mesh {
-                self.mesh(mesh.value(), placed)?;
+                self.mesh(mesh.value(), node, placed)?;
             }
         }
         Ok(())
     }
 
-    fn mesh(&mut self, at: usize, placed: DMat4) -> Result<(), MeshFileError> {
+    fn mesh(&mut self, at: usize, node: &Node, placed: DMat4) -> Result<(), MeshFileError> {
         let Some(mesh) = self.root.meshes.get(at) else {
             return Err(missing(format!("mesh {at}"), self.root.meshes.len()));
         };
+        deformed::refuse(at, mesh, node)?;
         // Primitives of one mesh often share their vertices.
         let mut shared: BTreeMap<usize, u32> = BTreeMap::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {

@@ -1,16 +1,23 @@
-//! Wavefront OBJ files: `v`, `vt` and `f`; every other statement is read over, and `mtllib` is
-//! told.
+//! Wavefront OBJ files: `v`, `vt` and `f` (`fo` in old ones); `mtllib` is told, surfaces that are
+//! not faces, other files' statements and unknown words are refused, and the statements without any
+//! area are read over.
 //!
 //! Read here and not by `tobj` 4.0.5, which multiplies a texture coordinate's index before it
 //! checks it (an overflow that panics or wraps around), gives a corner without texture coordinate
 //! the one of the corner before it, and names no lines.
 
 use super::polygon::{self, Early};
-use super::{MeshFileError, Triangles, fan};
+use super::{MeshFileError, Triangles, fan, unsupported};
 use crate::geometry::DVec3;
 use std::str::FromStr;
 
 const CURE: &str = "mend the line, or export the mesh again";
+
+/// Statements without an area (Wavefront's file formats, appendix B1): vertex data, points, lines
+/// and curves, what belongs to curves and surfaces, groups, looks.
+const WITHOUT_AREA: &str = "vn vp p l curv curv2 cdc cstype deg bmat step parm trim hole scrv sp end \
+    con res g s mg o bevel c_interp d_interp lod usemtl mtllib usemap maplib shadow_obj trace_obj ctech \
+    stech";
 
 /// The triangles of an OBJ file.
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, MeshFileError> {
@@ -85,11 +92,12 @@ impl Body {
                 };
                 self.uvs.push(uv);
             }
-            Some(b"f") => self.face(at, words)?,
+            Some(b"f" | b"fo") => self.face(at, words)?,
             Some(b"mtllib") if self.library.is_none() => {
                 self.library = Some(quoted(line.trim_ascii()[6..].trim_ascii()));
             }
-            _ => {}
+            Some(word) => read_over(at, word)?,
+            None => {}
         }
         Ok(())
     }
@@ -196,6 +204,26 @@ impl Body {
             bare: self.bare.filter(|_| !self.uvs.is_empty()).map(line),
             paint: self.library.map(|name| format!("materials in `{name}`")),
         })
+    }
+}
+
+/// Refuses a statement whose geometry would be lost.
+fn read_over(at: usize, word: &[u8]) -> Result<(), MeshFileError> {
+    let name = quoted(word);
+    let of = |what: &str| format!("`{name}` in line {at}, {what},");
+    match word {
+        b"surf" | b"bsp" | b"bzp" | b"cdp" => Err(unsupported(of("a curved surface"), "as faces")),
+        b"call" | b"csh" => {
+            let what = of("which takes statements from elsewhere");
+            Err(unsupported(what, "as one file"))
+        }
+        _ if WITHOUT_AREA
+            .split(' ')
+            .any(|known| known.as_bytes() == word) =>
+        {
+            Ok(())
+        }
+        _ => Err(malformed(at, format!("`{name}` is no statement of OBJ"))),
     }
 }
 

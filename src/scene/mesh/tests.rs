@@ -4,6 +4,7 @@ mod bodies;
 mod defective;
 mod forged;
 mod formats;
+mod lost;
 mod scenes;
 
 /// The unit cube's corners, x fastest.

@@ -8,9 +8,26 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
         ("a.ply", ply_bytes("binary_big_endian", |n| n.reverse())),
         ("a.ply", to_ply(&rectangle(2, 2), FaceValues::default())),
         ("a.obj", obj_text().into_bytes()),
+        (
+            "a.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nfo 1 2 3\nsurf 0 1 0 1 1 2 3\ncall b.obj\n".to_vec(),
+        ),
         ("a.gltf", gltf_text(&inline_buffer(), node).into_bytes()),
+        ("a.gltf", moved_gltf().into_bytes()),
         ("a.glb", glb(&gltf_text("", node), &gltf_buffer(&cube()))),
     ]
+}
+
+/// A target whose weight is 0, and the name of an extension.
+fn moved_gltf() -> String {
+    let node = r#"{"mesh": 0, "weights": [0]}"#;
+    let targets = r#""indices": 1, "targets": [{"POSITION": 0}]}], "weights": [1]}"#;
+    gltf_text(&inline_buffer(), node)
+        .replace(r#""indices": 1}]}"#, targets)
+        .replace(
+            r#""scene": 0"#,
+            r#""extensionsUsed": ["KHR_lights_punctual"], "scene": 0"#,
+        )
 }
 
 /// Whatever comes of it, it comes without a panic and can be judged and mended.
