@@ -14,7 +14,7 @@
 //! | `WALL.roughness` | growth of the roughness of a wall's material, of all parts of a mixture | % |
 //! | `WALL.ior` | growth of n − 1, n the refractive index of a wall's coat | % |
 //! | `WALL.albedo` | growth of the albedo of a wall, if it is not the scale of all light | % |
-//! | `WALL.mixture.K.weight` | what is added to the weight of part K of a wall's mixture, from 0, and taken from all others in proportion | % |
+//! | `WALL.mixture.K.weight` | what is added to the weight of part K of a wall's mixture, from 0, and taken from all others in proportion, so that their sum stays | percentage points |
 //!
 //! `WHAT` is a surface, or `hidden`, `wall`, `occluders`: all of that role, moved as one body. A
 //! mesh and a sphere have the axes of the scene for u, v and normal. `WALL` is a wall, or `wall`:
@@ -39,7 +39,7 @@ use motion::of_surfaces;
 pub struct Parameter {
     /// Its name.
     pub name: String,
-    /// Degrees, percent, or the scene's unit of length.
+    /// Degrees, percent, percentage points, or the scene's unit of length.
     pub unit: String,
     pub(super) kind: Kind,
 }
@@ -150,10 +150,13 @@ impl Parameter {
         self.is_spot_size() || self.kind.is_of_reflection()
     }
 
-    /// Whether its unit is percent.
+    /// Whether its unit is percent, of itself or of a whole.
     pub fn is_percent(&self) -> bool {
-        self.unit == PERCENT
+        [PERCENT, Self::POINTS].contains(&self.unit.as_str())
     }
+
+    /// The unit of a weight of a mixture: 2 of them make 0.32 of 0.3.
+    pub const POINTS: &str = "percentage points";
 }
 
 /// Occluders up to which each has shifts of its own.
@@ -276,8 +279,8 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
         | Kind::SpotDiameter
         | Kind::Roughness(_)
         | Kind::Contrast(_)
-        | Kind::Albedo(_)
-        | Kind::Weight(..) => PERCENT,
+        | Kind::Albedo(_) => PERCENT,
+        Kind::Weight(..) => Parameter::POINTS,
         _ => scene.unit.symbol(),
     };
     Ok(Parameter {

@@ -62,7 +62,11 @@ impl Key {
         if self.path == "uncertainty.NAME" {
             return Some(match step.rsplit('.').next() {
                 Some("angle" | "pitch" | "yaw" | "roll") => Dimension::Degrees,
-                Some("scale") => Dimension::Percent,
+                Some("scale" | "spot_diameter" | "roughness" | "ior" | "albedo") => {
+                    Dimension::Percent
+                }
+                // Percentage points, which "5 %" would not say.
+                Some("weight") => return None,
                 _ => Dimension::Length,
             });
         }

@@ -30,7 +30,8 @@ pub(in crate::cli) struct CalibrateArgs {
     /// spots.shift, spots.each, view.shift, camera.position, occluders.x, NAME.normal, and of how
     /// laser and walls spread light, laser.spot_diameter, wall.roughness, wall.ior, NAME.albedo,
     /// wall.mixture.0.weight; with =SIGMA how well it was measured (degrees, percent, the scene's
-    /// unit). The scene's [uncertainty] unless given
+    /// unit; percentage points of a mixture's weight, for which its other parts make room in
+    /// proportion, so that their sum stays). The scene's [uncertainty] unless given
     #[arg(long, value_name = "NAME[=SIGMA],…", value_delimiter = ',', value_parser = free)]
     pub free: Vec<Free>,
     /// Each frame has an unknown gain too, of this relative standard deviation, up to 1

@@ -13,6 +13,7 @@ use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed}
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::{figure, perhaps};
 use crate::recovery::ErrorField;
+use crate::scene::Parameter;
 pub(super) use directions::untold;
 
 /// Below this probability of so bad a fit the model lacks something.
@@ -197,6 +198,16 @@ impl Calibration {
         ))
     }
 
+    /// What a change of a weight is, which is not relative to it as other changes of materials are.
+    fn weights(&self) -> Option<String> {
+        let mut all = self.geometry();
+        all.any(|f| f.unit == Parameter::POINTS).then(|| {
+            "Weights of mixtures change by percentage points, not by parts of themselves: 2 make 0.32 of a weight \
+             of 0.3. The other parts of the mixture make room in proportion, so that their sum stays."
+                .to_owned()
+        })
+    }
+
     /// That errors which hang together do not average out.
     fn hang_together(&self) -> Option<String> {
         let cure = "take more, or estimate their part (--background)";
@@ -231,6 +242,7 @@ impl Calibration {
 
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![self.fit()];
+        notes.extend(self.weights());
         notes.extend(self.hang_together());
         let errors = "errors of the geometry are those by frames and blocks of pixels too, where they are larger";
         let neighbours = self.neighbours.filter(|_| !self.is_refuted());

@@ -33,6 +33,7 @@ glare = {{ fraction = 0.1, spread = {{ falloff = {falloff} }} }}
 [uncertainty]
 "hinge.angle" = {turn}
 "object.normal" = {shift}
+"wall.roughness" = {growth}
 "#,
         power = pick("5.0e-3", "\"5 mW\""),
         wavelength = pick("632.8e-9", "\"632.8 nm\""),
@@ -52,7 +53,32 @@ glare = {{ fraction = 0.1, spread = {{ falloff = {falloff} }} }}
         falloff = pick("0.5", "\"1.27 cm\""),
         turn = pick("0.5", "\"0.5 deg\""),
         shift = pick("0.1", "\"2.54 mm\""),
+        growth = pick("5.0", "\"5 %\""),
     )
+}
+
+/// A weight of a mixture changes by percentage points, which neither "2 %" nor a length says.
+#[test]
+fn a_weight_is_uncertain_by_a_bare_number() {
+    let mixture = "{ mixture = [{ weight = 0.5, material = { lambertian = 0.8 } }, { weight = 0.3, material = { lambertian = 0.2 } }] }";
+    let lines: Vec<String> = scene(|bare, _| bare)
+        .replace("{ oren_nayar = 0.8, roughness = 0.3 }", mixture)
+        .lines()
+        .filter(|line| !line.contains("wall.roughness"))
+        .map(str::to_owned)
+        .collect();
+    let with = |sigma: &str| {
+        let text = format!(
+            "{}\n\"wall.mixture.0.weight\" = {sigma}\n",
+            lines.join("\n")
+        );
+        Scene::from_toml("mixed", &text)
+    };
+    let stated = with("2").unwrap().uncertainty;
+    assert!(stated.contains(&("wall.mixture.0.weight".to_owned(), 2.0)));
+    for unit in ["\"2 %\"", "\"2 mm\""] {
+        assert!(with(unit).is_err(), "{unit}");
+    }
 }
 
 /// The number beside each value is the conversion by hand; the scene, its hash, its text are those

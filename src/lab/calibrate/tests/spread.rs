@@ -43,8 +43,17 @@ fn is_found(scene: &Scene, free: &[(&str, f64, f64)], draws: u64) {
         for (own, (_, truth, most)) in found.found.iter().zip(free) {
             let off = (own.value - truth) / own.stderr;
             assert!(off.abs() < 3.0, "{draw}: {off} {own:?}");
-            assert!(own.stderr < *most && own.unit == "%", "{draw}: {own:?}");
+            let unit = if own.name.ends_with(".weight") {
+                "percentage points"
+            } else {
+                "%"
+            };
+            assert!(own.stderr < *most && own.unit == unit, "{draw}: {own:?}");
         }
+        let notes = found.describe().notes.concat();
+        let has_weight = names.iter().any(|name| name.ends_with(".weight"));
+        let told = notes.contains("percentage points, not by parts of themselves");
+        assert_eq!(told, has_weight, "{notes}");
         if draw == 0 {
             let written = Scene::from_toml("calibrated", &found.toml).unwrap();
             let values: Vec<f64> = found.found.iter().map(|f| f.value).collect();
