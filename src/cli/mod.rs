@@ -15,7 +15,7 @@
 //! | `phi.tails.npy` | how far each standard error is to be trusted: 0, or the sum of 1 (one block has most of the scatter), 2 (blocks too skewed), 4 (light in few blocks), 8 (no light met yet: the standard error is an upper bound), 16 (like its neighbours); f64, (pixels, spots) |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
-//! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |
+//! | `model/z.npy` | z of every entry, what `run` compared by: deviation t of the traced from the modelled flux in standard errors, as the standard normal deviate of the same probability as Student's t with N − 1 degrees of freedom, N blocks; (pixels, spots) |
 //! | `recovered-NAME-DIGEST/` | what `phicam recover --phi` made of other photographs |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
 //! | `recovered/determined.npy`, `.png` | share of each element that the photographs determine at their noise, (nv, nu), 0 to 1 |

@@ -18,7 +18,7 @@ const TERMS: [(&str, &str); 8] = [
     ),
     (
         "z",
-        "traced minus modelled flux of an entry, in units of its standard error",
+        "traced minus modelled flux of an entry in units of its standard error, t, as the standard normal deviate that is as improbable: t follows Student's law of N − 1 degrees of freedom where the error is that of N blocks or replicates",
     ),
     (
         "degrees of freedom",

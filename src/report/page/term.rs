@@ -8,7 +8,10 @@ const TERMS: [(&str, &str); 24] = [
         "χ²/dof",
         "mean of the squared deviations, each in units of its own standard error: 1 on average where the model is right and its errors are known",
     ),
-    ("|z|", "size of a deviation in units of its standard error"),
+    (
+        "|z|",
+        "size of a deviation in units of its standard error, as the standard normal deviate that is as improbable by Student's law of N − 1 degrees of freedom (N blocks or replicates give the error)",
+    ),
     (
         "Φcam",
         "the matrix of all photographs: the flux into each pixel (row) for each laser spot (column), in W",

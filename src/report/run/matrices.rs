@@ -59,7 +59,8 @@ pub(super) fn deviations(results: &RunResults) -> String {
         let (panel, said) = map("z", z, Reduction::Pick);
         let [_, shown] = scale.range();
         html.push_str(&format!(
-            "<p>z: the difference of every entry in units of its standard error. If the \
+            "<p>z: the difference of every entry in units of its standard error, as the standard normal deviate that \
+             is as improbable by Student's law of N − 1 degrees of freedom, of N blocks. If the \
              model is right it is noise, without pattern, and stays within ±{}. \
              It is 0 where the entry is left out, as its standard error is in doubt, and where the difference is no \
              more than the model's stated bound, which is taken off first.</p>\n<div class=\"beside\">\n<div>\n{}{}{}</div>\n{}</div>\n",
