@@ -69,6 +69,9 @@ pub struct Agreement {
     pub entries: usize,
     /// Entries left out, their error being untrusted.
     pub left_out: usize,
+    /// Whether they are of a render.
+    #[serde(default)]
+    pub is_rendered: bool,
     /// Directions of the entries that other light and the scale took, fitted first.
     #[serde(default)]
     pub fitted: usize,
@@ -222,6 +225,7 @@ pub fn agree(
         significance: test.significance,
         entries,
         left_out: z.len() - entries,
+        is_rendered: test.known.paths.is_some(),
         fitted,
         other_light: 0.0,
         is_scale_free: evidence.eliminated.is_some_and(Eliminated::is_scale_free),

@@ -91,6 +91,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
         significance: 0.01,
         entries: 30720,
         left_out: 0,
+        is_rendered: true,
         fitted: 0,
         other_light: 0.0,
         gains: None,

@@ -90,9 +90,22 @@ impl Tails {
     }
 }
 
+/// What a render of so few entries may all have missed, where they are few.
+pub(super) fn missed(entries: usize) -> Option<String> {
+    (entries < FEW).then(|| {
+        format!(
+            "a path that is rare and bright, which fewer than {FEW} entries may all have missed (compare another \
+             --seed)"
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::finding::Describe;
+    use crate::lab::sample::run;
+    use crate::lab::score::Score;
 
     #[test]
     fn every_reason_is_counted_and_said() {
@@ -115,5 +128,27 @@ mod tests {
         assert!(all.sentence().starts_with(of_few), "{}", all.sentence());
         let of_many = Tails::of(&Matrix::zeros(10, 10)).sentence();
         assert_eq!(of_many, "can be trusted at all 100 entries");
+    }
+
+    /// The verdict on a render repeats it, of all entries that were rendered.
+    #[test]
+    fn a_verdict_on_few_entries_says_what_they_may_have_missed() {
+        let mut agreement = run("bench").agreement.unwrap();
+        for (entries, left_out, is_rendered, told) in [
+            (99, 0, true, true),
+            (98, 1, true, true),
+            (99, 1, true, false),
+            (100, 0, true, false),
+            (9, 0, false, false),
+        ] {
+            (agreement.entries, agreement.left_out) = (entries, left_out);
+            agreement.is_rendered = is_rendered;
+            for score in [None, Some(Score::default())] {
+                agreement.score = score;
+                let said = format!("{:?}", agreement.describe());
+                let of_few = "fewer than 100 entries may all have missed (compare another --seed)";
+                assert_eq!(said.contains(of_few), told, "{entries} {left_out}: {said}");
+            }
+        }
     }
 }

@@ -9,6 +9,7 @@ use super::gains::words;
 use super::grounds::FEWEST;
 use super::score::{Deviation, SINGLE_ELEMENTS, Score};
 use super::summary::{facts, percent};
+use super::tails::missed;
 use crate::num::digits::{figure, significant};
 
 /// Part of the noise up to which bounds of the model change no χ² to speak of.
@@ -224,12 +225,8 @@ impl Agreement {
                 "no deviation of the scene was fitted: of fewer than {FEWEST} replicates standard errors \
                  are too rough for it"
             );
-            let told = ("detects", few);
-            return if self.evidence {
-                vec![told]
-            } else {
-                Vec::new()
-            };
+            let told = [("detects", few)].into_iter().chain(self.untested());
+            return told.filter(|_| self.evidence).collect();
         };
         let cause = (!self.agrees).then(|| ("most likely", self.cause(score)));
         let stay = if score.shadows_stay {
@@ -238,10 +235,17 @@ impl Agreement {
             ""
         };
         let detects = format!("95 times in 100 from: {}{stay}", score.detectable());
-        let untested = &score.untested;
-        let untested = (!untested.is_empty()).then(|| ("not tested", listed(untested)));
         let detects = [("detects", detects)];
-        cause.into_iter().chain(detects).chain(untested).collect()
+        let told = cause.into_iter().chain(detects);
+        told.chain(self.untested()).collect()
+    }
+
+    /// What is not tested: of the scene, and of a render of few entries.
+    fn untested(&self) -> Option<(&'static str, String)> {
+        let of_scene = self.score.iter().flat_map(|score| score.untested.clone());
+        let rendered = self.is_rendered.then_some(self.entries + self.left_out);
+        let all: Vec<String> = of_scene.chain(rendered.and_then(missed)).collect();
+        (!all.is_empty()).then(|| ("not tested", listed(&all)))
     }
 
     /// The entries with the largest |z|.

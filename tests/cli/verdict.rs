@@ -191,6 +191,27 @@ fn a_matrix_of_ones_own_is_judged() {
     }
 }
 
+/// A render of fewer than 100 entries may have missed a rare path at all of them: `render` says so,
+/// and the verdict on it. Nobody knows that of a matrix that is given.
+#[test]
+fn what_few_entries_may_have_missed_is_said_again() {
+    let w = Workspace::with_scenes();
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let missed = "may all have missed";
+    let ended = w.phicam("render tiny.toml -o few --samples 1024").exits(0);
+    assert!(flat(&ended.stdout).contains(missed), "{}", ended.account());
+    let ended = w.phicam("validate few").exits(0);
+    assert!(flat(&ended.stdout).contains(missed), "{}", ended.account());
+    let given = "--phi few/phi.npy --stderr few/phi.stderr.npy --replicates 32";
+    for (workspace, line) in [
+        (&w, format!("validate --against tiny.toml {given}")),
+        (run(), "validate done".to_owned()),
+    ] {
+        let ended = workspace.phicam(&line).exits(0);
+        assert!(!flat(&ended.stdout).contains(missed), "{}", ended.account());
+    }
+}
+
 /// Photographs in counts, each frame with light of its own from elsewhere, agree with the scene that
 /// they are of, and with no other; a factor of all light is not seen, and told so.
 #[test]
