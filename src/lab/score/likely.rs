@@ -50,8 +50,9 @@ struct Cause {
 impl Causes<'_> {
     /// The most likely cause, of those `beyond` their limit the one that leaves the least χ², and
     /// those of `all` that explain the difference as well; and what that cause changes. Where the
-    /// best few by their first steps do not explain it, those are followed too that do best with
-    /// the light of the scene there: a model that bends is not told by its slope.
+    /// best few by their first steps do not explain it, the others are followed until one does, in
+    /// the order of what the light of the scene leaves there: a model that bends is not told by its
+    /// slope.
     pub(super) fn likely(
         &self,
         all: &[&Deviation],
@@ -69,8 +70,13 @@ impl Causes<'_> {
             let there = of_scene.filter_map(|d| Some((self.at_first_step(d)?, *d)));
             let mut there: Vec<(f64, &Deviation)> = there.collect();
             there.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let best = there.into_iter().take(FOLLOWED);
-            causes.extend(best.filter_map(|(_, d)| self.cause(d)));
+            for cause in there.into_iter().filter_map(|(_, d)| self.cause(d)) {
+                let explains = chi2(&cause) < EXPLAINED;
+                causes.push(cause);
+                if explains {
+                    break;
+                }
+            }
         }
         causes.sort_by(|a, b| chi2(a).total_cmp(&chi2(b)));
         let Some((best, others)) = causes.split_first() else {
