@@ -125,10 +125,10 @@ enum Place {
 ///
 /// with R's columns scaled to unit length. Its answer tells which bounds hold; an active-set
 /// refinement (Stark and Parker's bounded-variable least squares, started there) then solves for
-/// the rest by QR to full precision, never raising the objective. A variable whose column is 0 stays
-/// at its lower bound. The returned gap is the least that three dual points prove by weak duality:
-/// the residual R x − d, its part orthogonal to the columns of the variables between their bounds
-/// (which rounding of a large d disturbs least), and the solver's own y.
+/// the rest by QR to full precision, never raising the objective. A variable whose column is 0
+/// stays at its lower bound. The returned gap is the least that three dual points prove by weak
+/// duality: the residual R x − d, its part orthogonal to the columns of the variables between their
+/// bounds (which rounding of a large d disturbs least), and the solver's own y.
 ///
 /// # Errors
 /// Empty or non-finite input, shapes that do not fit, bounds that no number keeps, or a gap above

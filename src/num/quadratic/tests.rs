@@ -157,7 +157,7 @@ fn degenerate_and_bad_input() {
     );
 }
 
-/// A column of 0: its variable changes nothing and stays at its lower bound, whatever the upper one,
+/// A column of 0: its variable changes nothing and stays at its lower bound, whatever the upper,
 /// by either solver.
 #[test]
 fn what_is_not_seen_stays_at_its_lower_bound() {
