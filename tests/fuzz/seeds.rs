@@ -221,10 +221,7 @@ fn meshes() -> Vec<Vec<u8>> {
         of(0, &ply),
         of(0, text.as_bytes()),
         of(1, obj.as_bytes()),
-        of(
-            1,
-            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nfo 1 2 3\nsurf 0 1 0 1 1 2 3\ncall b.obj\n",
-        ),
+        of(1, b"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nfo 1 2 3\n"),
         of(2, moved.as_bytes()),
         of(
             2,
