@@ -57,8 +57,8 @@ pub(crate) fn run(scene: &str) -> RunResults {
     whole(bare(scene))
 }
 
-/// A fit to 24 entries.
-fn fit(chi2_per_dof: f64) -> Fit {
+/// A fit of 24 degrees of freedom.
+pub(in crate::lab) fn fit(chi2_per_dof: f64) -> Fit {
     Fit {
         chi2_per_dof,
         dof: 24.0,

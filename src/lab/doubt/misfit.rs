@@ -166,24 +166,9 @@ fn contradiction(best: &Attainable) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::sample::fit;
     use crate::matrix::Matrix;
     use crate::recovery::{Options, Problem, WeightRule, recover};
-
-    fn fit(chi2_per_dof: f64, fits: bool) -> Fit {
-        Fit {
-            chi2_per_dof,
-            dof: 10.0,
-            p: f64::from(u8::from(fits)),
-            entries: 12,
-            left_out: 0,
-            level: 1e-3,
-            fits,
-            within_integration: None,
-            outlier: None,
-            pooled: None,
-            neighbours: None,
-        }
-    }
 
     /// Where another picture fits, "leave it" is said of no option that was not given.
     #[test]
@@ -195,9 +180,13 @@ mod tests {
         let stderr = Matrix::from_element(4, 3, 0.1);
         let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
         let judged = Judged {
-            fit: Some(fit(9.0, false)),
+            fit: Some(Fit {
+                p: 0.0,
+                fits: false,
+                ..fit(9.0)
+            }),
             best: Some(Attainable {
-                possible: fit(1.0, true),
+                possible: fit(1.0),
                 any: None,
                 brightness: 1.0,
             }),

@@ -50,15 +50,23 @@ fn loud(object: &RecoveredObject) -> bool {
     told
 }
 
+/// What a method makes of photographs whose standard errors are known: its first surface.
+fn recovered(
+    model: &MatrixModel,
+    phi: &Matrix,
+    (stderr, certainty): (&Matrix, Certainty),
+    (method, options): (Method, &Options),
+) -> RecoveredObject {
+    let noise = Noise::StandardError(stderr, certainty);
+    let (nuisance, methods, control) = (Nuisance::default(), [method], Control::none());
+    let mut found = recover_objects(model, phi, noise, nuisance, &methods, options, control);
+    found.remove(0).outcome.unwrap().remove(0)
+}
+
 /// What is said of a method's picture, each entry known to 0.01.
 fn warnings(model: &MatrixModel, phi: &Matrix, method: Method) -> Vec<String> {
-    let stderr = phi.map(|_| 0.01);
-    let noise = Noise::StandardError(&stderr, Certainty::STATED);
-    let (nuisance, options) = (Nuisance::default(), Options::default());
-    let methods = [method];
-    let control = Control::none();
-    let found = recover_objects(model, phi, noise, nuisance, &methods, &options, control);
-    found[0].outcome.as_ref().unwrap()[0].warnings.clone()
+    let known = (&phi.map(|_| 0.01), Certainty::STATED);
+    recovered(model, phi, known, (method, &Options::default())).warnings
 }
 
 /// Three spots tell three directions of nine elements apart, and one spot none: the inverse of the

@@ -1,6 +1,7 @@
 //! Pictures that others contest.
 
 use super::*;
+use crate::lab::sample::fit;
 
 /// Elements about two levels, and on them: at the same noise the first are told from two
 /// reflectances and have errors that hold all the same, the second are taken for two.
@@ -19,19 +20,9 @@ fn greys_about_two_levels_are_told_from_two_levels() {
         };
         for seed in 1..4 {
             let right = Photographs::relative(&of.phi(), 1e-3, seed);
-            let noise = Noise::StandardError(&right.stderr, Certainty::STATED);
-            let (nuisance, options) = (Nuisance::default(), Options::default());
-            let two = [Method::JointTwoValued];
-            let found = recover_objects(
-                &of,
-                &right.phi,
-                noise,
-                nuisance,
-                &two,
-                &options,
-                Control::none(),
-            );
-            let found = &found[0].outcome.as_ref().unwrap()[0];
+            let known = (&right.stderr, Certainty::STATED);
+            let two = (Method::JointTwoValued, &Options::default());
+            let found = recovered(&of, &right.phi, known, two);
             let assumed = found.patterns.as_ref().unwrap().assumed();
             let exact = assumed.exact.unwrap();
             let told = found
@@ -61,16 +52,8 @@ fn a_pattern_that_is_one_of_many_says_so() {
     };
     for (level, many) in [(1e-4, false), (0.3, true)] {
         let of = Photographs::relative(&model.phi(), level, 5);
-        let found = recover_objects(
-            &model,
-            &of.phi,
-            Noise::StandardError(&of.stderr, Certainty::STATED),
-            Nuisance::default(),
-            &[Method::JointTwoValued],
-            &options,
-            Control::none(),
-        );
-        let found = &found[0].outcome.as_ref().unwrap()[0];
+        let known = (&of.stderr, Certainty::STATED);
+        let found = recovered(&model, &of.phi, known, (Method::JointTwoValued, &options));
         let told = found.warnings.iter().any(|w| w.contains("one of many"));
         assert_eq!(
             told, many,
@@ -93,17 +76,10 @@ fn pictures_that_contradict_each_other_are_told() {
     let found = methods.map(|m| crate::recovery::recover(m, &problem, &Options::default()));
     let mut found = found.map(Result::unwrap);
     let fit = Fit {
-        chi2_per_dof: 1.0,
         dof: 200.0,
         p: 0.5,
         entries: 200,
-        left_out: 0,
-        level: 1e-3,
-        fits: true,
-        within_integration: None,
-        outlier: None,
-        pooled: None,
-        neighbours: None,
+        ..fit(1.0)
     };
     let contested = |found: &[Recovered; 2]| {
         let mut judged = [(); 2].map(|()| Judged {

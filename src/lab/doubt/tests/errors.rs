@@ -70,16 +70,8 @@ fn errors_of_any_form_refute_nothing() {
             replicates,
             ..Certainty::STATED
         };
-        let found = recover_objects(
-            &model,
-            &right.phi,
-            Noise::StandardError(&right.stderr, certainty),
-            Nuisance::default(),
-            &[Method::JointUnbounded],
-            &Options::default(),
-            Control::none(),
-        );
-        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let method = (Method::JointUnbounded, &Options::default());
+        let warnings = recovered(&model, &right.phi, (&right.stderr, certainty), method).warnings;
         let told = warnings.iter().any(|w| w.contains("replicates"));
         assert_eq!(told, few, "{replicates:?}: {warnings:?}");
     }
@@ -94,16 +86,9 @@ fn how_alike_elements_are_is_told_or_not() {
         .collect();
     for (level, untold) in [(1e-9, false), (0.1, true)] {
         let of = Photographs::relative(&model.phi(), level, 5);
-        let found = recover_objects(
-            &model,
-            &of.phi,
-            Noise::StandardError(&of.stderr, Certainty::STATED),
-            Nuisance::default(),
-            &[Method::JointGp],
-            &Options::default(),
-            Control::none(),
-        );
-        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let known = (&of.stderr, Certainty::STATED);
+        let method = (Method::JointGp, &Options::default());
+        let warnings = recovered(&model, &of.phi, known, method).warnings;
         let told = warnings.iter().any(|w| w.contains("how alike"));
         assert_eq!(told, untold, "{level}: {warnings:?}");
     }
