@@ -150,7 +150,7 @@ impl CalibrationPlan {
             ));
         }
         photographs.check()?;
-        let of = |own| Refined::of(photographs.phi, own, known, photographs.left_out);
+        let of = |own| Refined::of_weights(photographs.phi, own, known, photographs.left_out);
         let refined = stderr.map(of);
         let known = refined.as_ref().map_or(known, |own| own.certainty);
         let photographs = Unexplained {

@@ -77,7 +77,8 @@ pub struct PooledFrom {
     /// What is expected of the square of a deviate over them, and of its fourth power.
     pub squares: [f64; 2],
     /// E σ²/s⁴ over E 1/s², s the pooled errors and σ those that they estimate: how many times too
-    /// small a variance is that takes s for σ, of what all entries change alike with.
+    /// small a variance is that takes s for σ, of what all entries change alike with; of smoothed
+    /// errors, of what they change with in proportion to their light.
     pub variance: f64,
 }
 

@@ -209,6 +209,7 @@ mod seldom;
 mod sensitivity;
 mod shaded;
 mod smooth;
+mod smooth_noise;
 mod spots;
 mod study;
 mod subject;

@@ -46,7 +46,7 @@ impl<'a> Noise<'a> {
         };
         let left_out = nuisance.left_out;
         Some(if methods.iter().any(|method| method.is_joint()) {
-            Refined::of(phi, stderr, known, left_out)
+            Refined::of_weights(phi, stderr, known, left_out)
         } else {
             Refined::of_replicates(stderr, known, left_out)
         })

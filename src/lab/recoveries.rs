@@ -133,8 +133,8 @@ fn pooled(group: &[&RecoveredObject]) -> String {
     let replicates = group.iter().find_map(|r| r.fit.as_ref()?.pooled);
     replicates.map_or(String::new(), |n| {
         format!(
-            "Standard errors from few replicates were pooled over pixels and spots: they are known as \
-             from {n}. "
+            "Standard errors were pooled over pixels and spots, so that chance does not weigh one \
+             entry more than others: they are known as from {n} replicates. "
         )
     })
 }

@@ -12,6 +12,7 @@ use super::certainty::Certainty;
 use super::counted::Counted;
 use super::light_law::LightLaw;
 use super::pooled::Pooled;
+use super::smooth_noise;
 use crate::matrix::{Matrix, expected};
 use crate::num::separable::Separable;
 
@@ -58,6 +59,20 @@ impl<'a> Refined<'a> {
         Self::of_replicates(stderr, certainty, left_out)
     }
 
+    /// The same for a fit that weighs entries by them and has no model of their light.
+    pub(super) fn of_weights(
+        phi: &Matrix,
+        stderr: &'a Matrix,
+        certainty: Certainty,
+        left_out: Option<&Matrix>,
+    ) -> Self {
+        let own = Self::of(phi, stderr, certainty, left_out);
+        match smooth_noise::pooled(phi, &own.stderr, own.certainty, left_out) {
+            Some(smooth) => Self::pooled(smooth),
+            None => own,
+        }
+    }
+
     /// The same whatever the entries, of methods that work pixel by pixel: they weigh none.
     pub(super) fn of_replicates(
         stderr: &'a Matrix,
@@ -65,14 +80,18 @@ impl<'a> Refined<'a> {
         left_out: Option<&Matrix>,
     ) -> Self {
         match Pooled::of(stderr, certainty, left_out) {
-            Some(own) => Self {
-                stderr: Cow::Owned(own.stderr),
-                certainty: own.certainty,
-            },
+            Some(own) => Self::pooled(own),
             None => Self {
                 stderr: Cow::Borrowed(stderr),
                 certainty,
             },
+        }
+    }
+
+    fn pooled(own: Pooled) -> Self {
+        Self {
+            stderr: Cow::Owned(own.stderr),
+            certainty: own.certainty,
         }
     }
 }

@@ -29,17 +29,12 @@ use std::ops::Range;
 
 use super::certainty::Errors;
 use super::evidence::{Evidence, Test};
+use super::smooth_noise::{BEYOND, SMOOTH, smoothed};
 use crate::matrix::Matrix;
 use crate::num::statistics::{student_threshold, student_to_normal, trigamma};
 
 /// 95 % of a normal distribution lie below.
 const POWER: f64 = 1.644_853_626_951_472_2;
-/// An entry with so many times the smoothed variance is weighed by its own: not by chance does an
-/// error of many replicates come out 4 times too large.
-const BEYOND: f64 = 16.0;
-/// Up to such a variance of ln σ² about what is smooth, weights by that are nearly the best: those
-/// of a normal law lose exp of it in variance.
-const SMOOTH: f64 = 0.5;
 /// Fewer independent rows than this do not tell their own scatter.
 const ENOUGH_ROWS: f64 = 16.0;
 
@@ -213,47 +208,6 @@ impl<'a> Residual<'a> {
         }
         self.fit(&own, &(0..d.ncols())).map_or(0.0, |f| f.z())
     }
-}
-
-/// The variance as a power of the light times a factor by row and one by column, fitted to the
-/// logarithms of the entries that are known and positive, and how these scatter about it, their
-/// variance. Without light it has the mean of its row and column.
-fn smoothed(variance: &Matrix, light: &Matrix, known: &dyn Fn(usize) -> bool) -> (Matrix, f64) {
-    let (by_line, of_variance) = split(variance, known);
-    let (_, of_light) = split(light, known);
-    let power = of_variance.dot(&of_light) / of_light.norm_squared();
-    let power = if power.is_finite() { power } else { 0.0 };
-    let of_light = of_light * power;
-    let count = (0..variance.len()).filter(|at| known(*at)).count();
-    let scatter = (of_variance - &of_light).norm_squared() / count.max(1) as f64;
-    ((by_line + of_light).map(libm::exp), scatter)
-}
-
-/// Logarithms as a term by row and one by column, and what is left of each; 0 of an entry that is
-/// not known or not positive.
-fn split(values: &Matrix, known: &dyn Fn(usize) -> bool) -> (Matrix, Matrix) {
-    let (rows, columns) = values.shape();
-    let (mut by_row, mut by_column) = (vec![[0.0; 2]; rows], vec![[0.0; 2]; columns]);
-    let mut all = [0.0; 2];
-    let log = |at: usize| (known(at) && values[at] > 0.0).then(|| libm::log(values[at]));
-    let logs: Vec<Option<f64>> = (0..values.len()).map(log).collect();
-    for (at, log) in logs.iter().enumerate() {
-        if let Some(log) = log {
-            for sum in [&mut by_row[at % rows], &mut by_column[at / rows], &mut all] {
-                sum[0] += log;
-                sum[1] += 1.0;
-            }
-        }
-    }
-    let whole = all[0] / all[1].max(1.0);
-    let mean = |[sum, n]: [f64; 2]| if n > 0.0 { sum / n } else { whole };
-    let by_line = Matrix::from_fn(rows, columns, |p, l| {
-        mean(by_row[p]) + mean(by_column[l]) - whole
-    });
-    let left = Matrix::from_fn(rows, columns, |p, l| {
-        logs[p + l * rows].map_or(0.0, |log| log - by_line[(p, l)])
-    });
-    (by_line, left)
 }
 
 /// A deviation with its error.

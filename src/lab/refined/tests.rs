@@ -211,3 +211,50 @@ fn right_light_of_few_counts_is_rejected_no_oftener_than_is_said() {
         assert!(mean > 1.0 || skewed > 2 * most, "{mean}: {skewed}");
     }
 }
+
+/// Light of few paths, 32 exponential replicates an entry with their own standard errors, 20 draws:
+/// the scale of the picture is right within 4 of its standard errors. With weights of 1/s² it is
+/// off by the covariance of mean and variance, 2 σ³/n of an exponential's, which is 2/n of the
+/// light.
+#[test]
+fn light_of_few_paths_is_not_too_dark() {
+    let mut scene = Scene::load("bench").unwrap();
+    [scene.camera.columns, scene.camera.rows] = [16; 2];
+    let model = MatrixModel::new(&scene, Kernel::Physical, Some([1, 1])).unwrap();
+    let exact = model.phi();
+    let n = 32u32;
+    let (mut sum, mut known) = (0.0, 0.0);
+    for seed in 0..20 {
+        let key = Key {
+            seed: 90 + seed,
+            spot: 0,
+            pixel: 0,
+            block: 0,
+        };
+        let mut draw = Stream::new(Sampling::Pcg, key);
+        let all: Vec<Matrix> = (0..n)
+            .map(|_| exact.map(|x| -x * libm::log(1.0 - draw.uniform())))
+            .collect();
+        let count = f64::from(n);
+        let phi = all.iter().sum::<Matrix>() / count;
+        let squares = all.iter().map(|x| (x - &phi).map(|d| d * d));
+        let stderr = squares.sum::<Matrix>();
+        let stderr = stderr.map(|s| (s / (count - 1.0) / count).sqrt());
+        let found = recover_objects(
+            &model,
+            &phi,
+            Noise::StandardError(&stderr, Certainty::new(Errors::Independent, Some(n))),
+            Nuisance::default(),
+            &[Method::JointGp],
+            &Options::default(),
+            Control::none(),
+        );
+        let found = &found[0].outcome.as_ref().unwrap()[0];
+        let fit = found.fit.as_ref().unwrap();
+        assert!(fit.fits && fit.pooled.is_some(), "{fit:?}");
+        sum += found.reflectance[0] / model.albedo[0] - 1.0;
+        known += found.standard_error.as_ref().unwrap()[0] / model.albedo[0];
+    }
+    let (off, error) = (sum / 20.0, known / 20.0 / 20.0_f64.sqrt());
+    assert!(off.abs() < 4.0 * error, "{off} {error}");
+}
