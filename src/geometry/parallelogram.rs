@@ -95,6 +95,15 @@ impl Parallelogram {
         [[a, b], [b, c], [c, d], [d, a]]
     }
 
+    /// The lines that divide it into `count` equal cells along u and v, from end to end.
+    pub fn lines(&self, count: [usize; 2]) -> impl Iterator<Item = [DVec3; 2]> {
+        let inner = |n: usize| (1..n).map(move |i| i as f64 / n as f64);
+        let at = |a: f64, b: f64| self.corner + a * self.u + b * self.v;
+        let across_u = inner(count[0]).map(move |a| [at(a, 0.0), at(a, 1.0)]);
+        let across_v = inner(count[1]).map(move |b| [at(0.0, b), at(1.0, b)]);
+        across_u.chain(across_v)
+    }
+
     /// Cosine of the angle between u and v; 0 for a rectangle.
     pub fn skew(&self) -> f64 {
         self.u.dot(self.v) / (self.u.length() * self.v.length())

@@ -19,7 +19,8 @@ pub struct Converged {
     /// where that is more, r ≤ 0.9 the last change over the one before, or what such an r leaves of
     /// an error that falls like a power of the nodes. It covers what is left of a geometric
     /// sequence and of a power, and some ten times the last change at most. Where hidden surfaces
-    /// and walls were refined apart the sum of both, and what mixes them.
+    /// and walls were refined apart the sum of both, and what mixes them. Where more cells of a
+    /// wall's texture lie in a pixel or spot than it is cut along, what their edges may leave.
     pub bound: Matrix,
     /// Relative Frobenius norm of the last change.
     pub change: f64,
@@ -107,7 +108,8 @@ const ENOUGH: f64 = 1e-5;
 const ROUGH: f64 = 1e-4;
 
 /// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden
-/// surface, over each footprint and over each spot's profile, as far as `extent` asks for it,
+/// surface, over each footprint and over each spot's profile, cut along the edges of the walls and
+/// of their texture's cells, as far as `extent` asks for it,
 /// refined together until Φcam changes by less than 1e-10, and every entry by less than 1e-7, or
 /// the rules are as large as they may be; where the bound of an entry is then above 1e-5 of it, the
 /// hidden surfaces and the walls are refined further, each by itself. Cells and footprints that
@@ -160,11 +162,17 @@ fn unobstructed(
         visible: None,
         phi: series.phi,
     };
+    let walls = series.level;
     let enough = |(e, x): (&f64, &f64)| *e <= ENOUGH * x.abs();
     if series.level < LAST_LEVEL && !free.bound.iter().zip(&free.phi).all(enough) {
         let level = series.level;
         free.apart(&first, level, integrate, |level| cut.cost(level) <= apart);
     }
+    let [pixels, spots] = cut.jumps(walls);
+    let (rows, columns) = free.phi.shape();
+    free.bound += Matrix::from_fn(rows, columns, |p, l| {
+        free.phi[(p, l)].abs() * (pixels[p] + spots[l])
+    });
     free
 }
 

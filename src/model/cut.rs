@@ -135,6 +135,38 @@ impl<'a> Cut<'a> {
         overhang::lit(self.scene, self.profile, 2 + 2 * level)
     }
 
+    /// How far a rule of `level` may be off where albedo jumps between its nodes, relative, of each
+    /// pixel and each spot: of N nodes about a row of √N lies on the wrong side of an edge,
+    ///
+    /// > 2 (ρ_max − ρ_min)/ρ̄ /√N,   N = (Σ w)²/Σ w².
+    ///
+    /// 0 of those that are cut along the edges of the texture.
+    pub(super) fn jumps(&self, level: usize) -> [Vec<f64>; 2] {
+        let scene = self.scene;
+        let surfaces = scene.surfaces.iter();
+        let unseamed: Vec<bool> = surfaces.map(|s| s.seams().is_none()).collect();
+        let unseamed = |w: &WallPoint| w.surface.is_some_and(|id| unseamed[id as usize]);
+        let seen = |(p, parts): (usize, &Vec<FootprintPart>)| {
+            let is_motley = parts.iter().any(|part| part.is_motley);
+            let nodes = parts.iter().flat_map(|part| part.nodes(level));
+            let nodes: Vec<WallPoint> = nodes
+                .map(|(ab, w)| wall_point::seen(scene, p, ab, w))
+                .collect();
+            let own = is_motley || nodes.iter().any(unseamed);
+            if own { spread(&nodes) } else { 0.0 }
+        };
+        let seen = self.footprints.iter().enumerate().map(seen).collect();
+        let lit = self.lit(level).into_iter().enumerate();
+        let lit = lit.map(|(l, nodes)| {
+            if overhang::is_motley(scene, l, self.profile) {
+                spread(&nodes)
+            } else {
+                0.0
+            }
+        });
+        [seen, lit.collect()]
+    }
+
     /// The ends of the wall across each spot, at `level`.
     pub(super) fn ends(&self, level: usize) -> Vec<Vec<(WallPoint, DVec3)>> {
         let of = |l| overhang::ends(self.scene, l, self.profile, 2 + 2 * level);
@@ -177,6 +209,23 @@ impl<'a> Cut<'a> {
             });
         }
         phi.transpose()
+    }
+}
+
+/// 2 (ρ_max − ρ_min)/ρ̄ /√N of the nodes that are lit or seen.
+fn spread(nodes: &[WallPoint]) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
+    let [mut squares, mut mean] = [0.0; 2];
+    for node in nodes.iter().filter(|node| node.weight > 0.0) {
+        let (w, albedo) = (node.weight, node.albedo());
+        (low, high) = (low.min(albedo), high.max(albedo));
+        squares += w * w;
+        mean += w * albedo;
+    }
+    if mean > 0.0 && nodes.len() > 1 {
+        2.0 * (high - low) * squares.sqrt() / mean
+    } else {
+        0.0
     }
 }
 

@@ -15,6 +15,8 @@ use figure::{CORNER, along_side, chords, inside, nodes_within};
 
 /// Half the side of a square about a spot over its reach.
 const BEYOND: f64 = 1.01;
+/// Figures into which a spot is cut, at most.
+const MOST_FIGURES: usize = 256;
 /// Points of a wall's end are taken this part of their way from within, on the wall.
 const INSIDE: f64 = 1.0 - 1e-9;
 
@@ -127,11 +129,12 @@ fn nodes_to_its_end(
 }
 
 /// Convex figures about the middle of a spot, in each of which its beam meets one wall of those
-/// that are flat with straight edges: between the planes through the laser and the edges of walls.
-/// None where it meets no other wall than its own.
+/// that are flat with straight edges, and one cell of its texture: between the planes through the
+/// laser and the edges of walls and cells. None where it meets no other wall than its own and no
+/// other cell, and where these are too many.
 fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64; 2]>>> {
     let reach = reach(profile);
-    if reach == 0.0 || scene.relays().count() < 2 {
+    if reach == 0.0 {
         return None;
     }
     let own = scene.laser.spots.get(spot)?;
@@ -146,15 +149,21 @@ fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64;
         Shape::Parallelogram(wall) => Some(wall.sides()),
         _ => None,
     });
-    for [a, b] in sides.flatten() {
+    let seams = scene
+        .relays()
+        .filter_map(|(id, wall)| Some((id, wall.seams()?)));
+    let seams = seams.flat_map(|(id, seams)| seams.into_iter().map(move |ends| (ends, Some(id))));
+    let mut is_motley = false;
+    for ([a, b], seam) in sides.flatten().map(|ends| (ends, None)).chain(seams) {
         let edge = (a - laser).cross(b - laser);
         let height = |at: [f64; 2]| edge.dot(aim(at));
-        let [middle, along, up] = [[0.0; 2], [1.0, 0.0], [0.0, 1.0]].map(height);
-        let slope = libm::hypot(along - middle, up - middle);
-        // One that touches the spot leaves nothing beyond.
-        if middle.abs() < (1.0 - CORNER) * slope * reach {
+        if crosses(height, reach) {
             let halves = figures.iter().flat_map(|f| halved(f, height));
             figures = halves.filter(|f| f.len() > 2).collect();
+            is_motley |= seam == Some(own.surface as usize);
+        }
+        if figures.len() > MOST_FIGURES {
+            return None;
         }
     }
     if figures.len() < 2 {
@@ -167,7 +176,33 @@ fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64;
     let lit = figures.into_iter().filter_map(|f| Some((wall(&f)?, f)));
     let lit: Vec<_> = lit.collect();
     let is_other = lit.iter().any(|(id, _)| *id != own.surface);
-    is_other.then(|| lit.into_iter().map(|(_, figure)| figure).collect())
+    (is_other || is_motley).then(|| lit.into_iter().map(|(_, figure)| figure).collect())
+}
+
+/// Whether a line at which this height is 0 crosses a spot: one that touches it leaves nothing
+/// beyond.
+fn crosses(height: impl Fn([f64; 2]) -> f64, reach: f64) -> bool {
+    let [middle, along, up] = [[0.0; 2], [1.0, 0.0], [0.0, 1.0]].map(height);
+    let slope = libm::hypot(along - middle, up - middle);
+    middle.abs() < (1.0 - CORNER) * slope * reach
+}
+
+/// Whether the albedo may jump within what is taken of a spot in one: too many cells of a texture
+/// lie there, or those of a wall that is no parallelogram.
+pub(super) fn is_motley(scene: &Scene, spot: usize, profile: Profile) -> bool {
+    let reach = reach(profile);
+    if reach == 0.0 || figures(scene, spot, profile).is_some() {
+        return false;
+    }
+    let own = &scene.laser.spots[spot];
+    let (laser, basis) = (scene.laser.position, Basis::around(own.target.normal));
+    let aim = |[x, y]: [f64; 2]| own.target.position + basis.to_world([x, y, 0.0]) - laser;
+    let crossed = |[a, b]: [DVec3; 2]| {
+        let edge = (a - laser).cross(b - laser);
+        crosses(|at| edge.dot(aim(at)), reach)
+    };
+    let seams = scene.surfaces[own.surface as usize].seams();
+    seams.is_none_or(|seams| seams.into_iter().any(crossed))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The wall as laser and camera meet it.
 
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
 use crate::geometry::{DVec3, Interaction, Intersection, Ray, Shape, ShapeId};
@@ -51,6 +51,14 @@ impl WallPoint {
                     scene.surfaces[surface].brdf(albedo, self.normal, device, to)
                 }
             }
+    }
+
+    /// Value of the wall's texture.
+    pub(super) fn albedo(&self) -> f64 {
+        match self.reflection {
+            Reflection::Constant(f) => PI * f,
+            Reflection::Directed { albedo, .. } => albedo,
+        }
     }
 
     /// Weight times f_r times G.

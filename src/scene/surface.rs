@@ -129,6 +129,16 @@ impl Surface {
         }
     }
 
+    /// Where the albedo of a flat rectangle or parallelogram jumps or bends, lines from end to end;
+    /// none of other shapes, whose texture bends there too.
+    pub fn seams(&self) -> Option<Vec<[DVec3; 2]>> {
+        match (&self.shape, self.albedo.smooth_cells()) {
+            (_, [1, 1]) => Some(Vec::new()),
+            (Shape::Parallelogram(p), count) => Some(p.lines(count).collect()),
+            _ => None,
+        }
+    }
+
     /// The same surface, its mesh cut into facets along the edges of its texture, if it has any.
     pub(super) fn in_facets(mut self) -> Self {
         if let Shape::Instance(body) = self.shape {

@@ -75,3 +75,43 @@ fn a_wall_in_two_parts_is_one_wall() {
         }
     }
 }
+
+/// The cells of a wall's texture are walls of their own, wherever spots and pixels lie across them;
+/// of a checkerboard so fine that nothing is cut along it, which lights as a wall of its mean albedo
+/// does, the bound says how far the rule is off.
+#[test]
+fn cells_of_a_texture_are_walls() {
+    let one = "corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0]";
+    let quarters = [(-30, -30, 0.2), (0, -30, 0.8), (-30, 0, 0.5), (0, 0, 0.3)];
+    let rectangles: Vec<String> = quarters
+        .iter()
+        .map(|(x, y, _)| format!("corner = [{x}, {y}, 0], u = [30, 0, 0], v = [0, 30, 0]"))
+        .collect();
+    let walls: Vec<(&str, f64)> = (0..4)
+        .map(|k| (rectangles[k].as_str(), quarters[k].2))
+        .collect();
+    let across = |scene: &Scene, albedo: &str| {
+        let view = "x = [-3.25, -1.5], y = [-2.75, -1.0]";
+        let text = scene
+            .text
+            .replacen(view, "x = [-1.0, 0.7], y = [-0.4, 0.9]", 1)
+            .replacen("lambertian = 0.11", &format!("lambertian = {albedo}"), 1);
+        let scene = Scene::from_toml("seam", &text).unwrap();
+        converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED).unwrap()
+    };
+    for profile in ["disc", "gaussian"] {
+        let walls = across(&scene(profile, &walls), "");
+        let plain = scene(profile, &[(one, 0.11)]);
+        let cells = across(&plain, "{ cells = [[0.2, 0.8], [0.5, 0.3]] }");
+        assert!(cells.worst().unwrap().1 < 1e-6, "{:?}", cells.worst());
+        for (a, b) in cells.phi.iter().zip(&walls.phi) {
+            assert!((a - b).abs() < 1e-7 * b, "{profile}: {a:e} {b:e}");
+        }
+        let fine = "{ checkerboard = [3999, 3999], dark = 0.2, light = 0.6 }";
+        let [fine, mean] = [fine, "0.4"].map(|albedo| across(&plain, albedo));
+        for k in 0..fine.phi.len() {
+            let off = (fine.phi[k] - mean.phi[k]).abs();
+            assert!(off > mean.bound[k] && off < fine.bound[k], "{profile} {k}");
+        }
+    }
+}

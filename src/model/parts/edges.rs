@@ -6,13 +6,22 @@ use crate::scene::{Camera, Scene, Surface};
 
 /// An edge of a wall nearer to a corner of a part than this fraction of it passes through it.
 const ON_EDGE: f64 = 1e-12;
-/// Figures into which a square is cut, at most.
-const MOST_FIGURES: usize = 64;
 /// Pixels beyond its own that a segment is looked for in.
 const BESIDE: f64 = 1e-6;
 
 /// A convex figure, by its corners.
 pub(super) type Outline = Vec<[f64; 2]>;
+
+/// What changes across an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Across {
+    /// The facet that the camera sees.
+    Facet,
+    /// The albedo of the wall, or its slope.
+    Albedo,
+    /// Which side a hidden surface shows.
+    Side,
+}
 
 /// A plane through the camera across which the light of what it sees of walls may jump or bend.
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +29,7 @@ pub(super) struct Edge {
     normal: DVec3,
     /// Of a segment: of w from the camera all n·w > 0 between its ends.
     ends: Option<[DVec3; 2]>,
-    /// Whether the camera may see another facet beyond it.
-    pub jumps: bool,
+    pub across: Across,
 }
 
 /// The edges of a scene's walls.
@@ -33,15 +41,22 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    /// Of parallelograms and of where meshes fold or end, where what the camera sees jumps; and
+    /// Of parallelograms and of where meshes fold or end, where what the camera sees jumps; between
+    /// the cells of a parallelogram's texture, where its albedo does; and
     /// through the line in which the planes of two walls, or of a wall and a flat hidden surface,
     /// meet, n·w = d and m·w = e: n (e − m·o) − m (d − n·o), o the camera. Beyond the latter a
     /// hidden surface shows its back. Rims of discs and balls are not among them.
     pub(super) fn new(scene: &Scene) -> Self {
         let camera = &scene.camera;
         let mut segments = vec![Vec::new(); camera.pixels()];
-        for ends in scene.relays().flat_map(|(_, wall)| sides(wall)) {
-            add(camera, ends.map(|p| p - camera.position), &mut segments);
+        let of = |(_, wall)| {
+            let seams = Surface::seams(wall).unwrap_or_default().into_iter();
+            let sides = sides(wall).into_iter().map(|ends| (ends, Across::Facet));
+            sides.chain(seams.map(|ends| (ends, Across::Albedo)))
+        };
+        for (ends, across) in scene.relays().flat_map(of) {
+            let ends = ends.map(|p| p - camera.position);
+            add(camera, (ends, across), &mut segments);
         }
         Self {
             lines: lines(scene),
@@ -76,15 +91,15 @@ fn lines(scene: &Scene) -> Vec<Edge> {
     let hidden: Vec<(DVec3, f64)> = scene.hidden().filter_map(plane).collect();
     let mut found = Vec::new();
     for (i, (n, d)) in walls.iter().enumerate() {
-        let others = walls[..i].iter().map(|plane| (plane, true));
-        for ((m, e), jumps) in others.chain(hidden.iter().map(|plane| (plane, false))) {
+        let others = walls[..i].iter().map(|plane| (plane, Across::Facet));
+        for ((m, e), across) in others.chain(hidden.iter().map(|plane| (plane, Across::Side))) {
             let normal = *n * *e - *m * *d;
             // Parallel planes meet nowhere.
             if normal.length() > ON_EDGE * (d.abs() + e.abs()) {
                 found.push(Edge {
                     normal,
                     ends: None,
-                    jumps,
+                    across,
                 });
             }
         }
@@ -93,12 +108,12 @@ fn lines(scene: &Scene) -> Vec<Edge> {
 }
 
 /// Adds a segment, its ends from the camera, to the pixels that it may cross.
-fn add(camera: &Camera, [a, b]: [DVec3; 2], segments: &mut [Vec<Edge>]) {
+fn add(camera: &Camera, ([a, b], across): ([DVec3; 2], Across), segments: &mut [Vec<Edge>]) {
     let normal = a.cross(b);
     let edge = Edge {
         normal,
         ends: Some([normal.cross(a), b.cross(normal)]),
-        jumps: true,
+        across,
     };
     let to_view = camera.view.corner() - camera.position;
     let view = camera.view.normal() * camera.view.normal().dot(to_view).signum();
@@ -129,12 +144,24 @@ fn add(camera: &Camera, [a, b]: [DVec3; 2], segments: &mut [Vec<Edge>]) {
     };
     for row in range(1, camera.rows) {
         for column in range(0, camera.columns) {
-            segments[column + row * camera.columns].push(edge);
+            let pixel = column + row * camera.columns;
+            if across != Across::Albedo || edge.may_cross(camera, pixel) {
+                segments[pixel].push(edge);
+            }
         }
     }
 }
 
 impl Edge {
+    /// Whether the corners of a pixel's footprint lie on both sides of it: of many cells of a
+    /// texture few are near.
+    fn may_cross(&self, camera: &Camera, pixel: usize) -> bool {
+        let footprint = camera.footprint(pixel);
+        let height = |at: [f64; 2]| self.normal.dot(footprint.at(at) - camera.position);
+        let heights = CORNERS.map(height);
+        heights.iter().any(|h| *h > 0.0) && heights.iter().any(|h| *h < 0.0)
+    }
+
     /// Whether it divides a figure whose corners have these heights over its plane.
     fn divides(
         &self,
@@ -161,9 +188,10 @@ impl Edge {
 }
 
 /// The figures into which edges cut the unit square, points of which are so far `from` the camera:
-/// along a segment only those that it crosses. None where they are too many.
+/// along a segment only those that it crosses. None where they are more than `most`.
 pub(super) fn figures<'e>(
     edges: impl Iterator<Item = &'e Edge>,
+    most: usize,
     from: impl Fn([f64; 2]) -> DVec3,
 ) -> Option<Vec<Outline>> {
     let mut figures = vec![CORNERS.to_vec()];
@@ -187,7 +215,7 @@ pub(super) fn figures<'e>(
             }
         });
         figures = parts.filter(|figure| figure.len() > 2).collect();
-        if figures.len() > MOST_FIGURES {
+        if figures.len() > most {
             return None;
         }
     }

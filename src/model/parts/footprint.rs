@@ -1,11 +1,15 @@
 //! Parts of a pixel's footprint.
 
-use super::edges::{Edges, Outline, figures};
+use super::edges::{Across, Edges, Outline, figures};
 use super::{
     Ball, FAR, MOST_FOOTPRINT_CUTS, MOST_FOOTPRINT_PARTS, folded, nodes_a_side, plane_nodes,
 };
 use crate::model::place::{CORNERS, area_of, within};
 use crate::scene::{Scene, Surface};
+
+/// Figures into which a square is cut, at most: along facets, and along cells of a texture too.
+const MOST_FACETS: usize = 64;
+const MOST_CELLS: usize = 2048;
 
 /// A part of a footprint: corner and side in its coordinates, the ball around what is seen there,
 /// and its distance from the hidden surfaces in radii.
@@ -18,6 +22,8 @@ pub(in crate::model) struct FootprintPart {
     /// facet of a wall, or none, and the front of a flat hidden surface, or its back: the integrand
     /// is smooth. None where it is whole, and where too many edges cross it.
     triangles: Vec<[[f64; 2]; 3]>,
+    /// Whether the albedo may jump within it, so many cells of a texture lie there.
+    pub is_motley: bool,
 }
 
 /// A convex piece of a footprint, in its coordinates.
@@ -67,15 +73,17 @@ impl FootprintPart {
             },
             distance: f64::INFINITY,
             triangles: Vec::new(),
+            is_motley: false,
         }
     }
 
     /// Coordinates in the footprint with shares of it.
     pub(in crate::model) fn nodes(&self, level: usize) -> Vec<([f64; 2], f64)> {
-        // The étendue varies over it too, and so may the wall's BRDF.
+        // The étendue varies over it too, and so may the wall's BRDF; over many figures less.
+        let finer = (0.5 * self.triangles.len() as f64).sqrt().max(1.0);
         let n = match self.ball.radius {
             0.0 => 1,
-            _ => nodes_a_side(self.distance, level).max(level + 1),
+            _ => nodes_a_side(finer * self.distance, level).max(level + 1),
         };
         let ([u, v], side) = (self.from, self.side);
         let placed = |([a, b], w): ([f64; 2], f64)| ([u + side * a, v + side * b], w * side * side);
@@ -118,6 +126,7 @@ impl<'a> Footprints<'a> {
                     .map(from_surface)
                     .fold(f64::INFINITY, f64::min),
                 triangles: Vec::new(),
+                is_motley: false,
             }
         };
         let (mut done, mut open) = (Vec::new(), vec![part([0.0; 2], 1.0)]);
@@ -136,7 +145,11 @@ impl<'a> Footprints<'a> {
             open = next;
         }
         for part in &mut done {
-            let cut = self.cut(pixel, (part.from, part.side), true);
+            let square = (part.from, part.side);
+            let cut = self.cut(pixel, square, MOST_CELLS, |_| true);
+            part.is_motley = cut.is_none();
+            let plain = |across| across != Across::Albedo;
+            let cut = cut.or_else(|| self.cut(pixel, square, MOST_FACETS, plain));
             part.triangles = cut.map_or_else(Vec::new, |figures| triangles(&figures));
         }
         done
@@ -156,7 +169,10 @@ impl<'a> Footprints<'a> {
             share: side * side,
             crossed,
         };
-        let Some(figures) = self.cut(pixel, square, false) else {
+        let cut = self.cut(pixel, square, MOST_FACETS, |across| across != Across::Side);
+        let facets = || self.cut(pixel, square, MOST_FACETS, |across| across == Across::Facet);
+        let cut = cut.or_else(facets);
+        let Some(figures) = cut else {
             return vec![whole(Crossed::TooOften)];
         };
         if figures.len() == 1 {
@@ -174,20 +190,21 @@ impl<'a> Footprints<'a> {
         figures.iter().map(piece).collect()
     }
 
-    /// The figures of a square, in its own coordinates; with the edges where light `bends` only, or
-    /// without.
+    /// The figures of a square, in its own coordinates, along the edges that `counts`; none where
+    /// they are more than `most`.
     fn cut(
         &self,
         pixel: usize,
         ([u, v], side): ([f64; 2], f64),
-        bends: bool,
+        most: usize,
+        counts: impl Fn(Across) -> bool,
     ) -> Option<Vec<Outline>> {
         let (footprint, camera) = (
             self.scene.camera.footprint(pixel),
             self.scene.camera.position,
         );
-        let edges = self.edges.of(pixel).filter(|edge| bends || edge.jumps);
-        figures(edges, |[a, b]| {
+        let edges = self.edges.of(pixel).filter(|edge| counts(edge.across));
+        figures(edges, most, |[a, b]| {
             footprint.at([u + a * side, v + b * side]) - camera
         })
     }
