@@ -92,6 +92,10 @@ const THREE_BOUNCES: u32 = 3;
 const WAVELENGTHS: [f64; 2] = [1.6e-8, 1.1e-4];
 const POWERS: [f64; 2] = [1e-6, 1.0];
 
+/// 1/e² radii of a Gaussian spot beyond which lies e^−24.5 of its power: light by way of a hidden
+/// surface is more than that.
+const TAIL: f64 = 3.5;
+
 /// Collects what is suspicious.
 pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     let mut found = scene.found.clone();
@@ -141,6 +145,10 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
         Profile::Disc { radius } | Profile::Gaussian { radius } => radius,
         Profile::Shining { .. } => return view_behind(scene, found),
     };
+    let tail = match laser.profile {
+        Profile::Gaussian { radius } => TAIL * radius,
+        _ => reach,
+    };
     let mut in_view = Vec::new();
     let mut shadowed = Vec::new();
     let mut overhanging = Vec::new();
@@ -151,7 +159,7 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
         .collect();
     for (i, spot) in laser.spots.iter().enumerate() {
         let target = spot.target.position;
-        if in_view_of(scene, spot, reach) {
+        if in_view_of(scene, spot, tail) {
             in_view.push(i);
         }
         if reach > 0.0 && rim_leaves(scene, &spot.target, reach) {

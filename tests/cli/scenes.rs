@@ -92,6 +92,21 @@ fn check_names_a_spot_in_the_view() {
     );
 }
 
+/// A Gaussian spot of 1/e² radius 0.25 in. whose middle is 2.4 of these beside the view lights it
+/// with e^−11.5 of its peak, by which light by way of a hidden surface is outshone; 4 are enough.
+#[test]
+fn check_names_a_gaussian_spot_whose_tail_is_in_the_view() {
+    let workspace = Workspace::new();
+    let points = "[[1.0, 1.0], [2.65, 4.0], [2.25, 4.0]]";
+    workspace.write("odd.toml", with_points_and_surface(points, ""));
+    let wide = "scene check odd.toml -D laser.spot_diameter=0.5 -D laser.profile=gaussian";
+    let text = workspace.phicam(wide).exits(0).stdout;
+    assert!(
+        text.contains("suspicious: spot 1 in the camera's view"),
+        "{text}"
+    );
+}
+
 /// The spots of `parallel-squares` lie above the view's rectangle but on the square that the camera
 /// does not look at, and those behind an occluder are out of its sight.
 #[test]

@@ -15,7 +15,8 @@ use crate::scene::error::{Fault, keys};
 /// skipped. The triples, in any order, are a complete grid: each θ_i with each θ_o with each φ,
 /// once; θ_i and θ_o take the same values.
 ///
-/// f_r is multilinear between the lines and constant beyond the outermost angles; φ is folded to
+/// f_r is multilinear between the lines and constant beyond the outermost angles, so that a table
+/// of one line is Lambertian; one whose polar angles end as if in radians is refused. φ is folded to
 /// [0, 180]. Values for (θ_i, θ_o) and (θ_o, θ_i) that differ by no more than a twentieth of the
 /// larger are averaged, so the BRDF is exactly reciprocal; others are refused.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +28,8 @@ pub(super) struct Grid {
 }
 
 const HEADER: &str = "theta_i,theta_o,phi,value";
+/// No table in degrees ends so near to the normal: one in radians ends at π/2 at most.
+const RADIANS: f64 = 1.6;
 /// Largest share by which exchanged directions may differ.
 const RECIPROCITY: f64 = 0.05;
 
@@ -121,6 +124,16 @@ impl Grid {
             all
         };
         let (theta, phi) = (axis(&[0, 1]), axis(&[2]));
+        let steepest = theta.last().copied().unwrap_or(0.0);
+        if steepest > 0.0 && steepest < RADIANS {
+            let cause = format!(
+                "the polar angles end at {steepest}, as if they were in radians: all steeper light would have the value there"
+            );
+            return Err(refusal(
+                cause,
+                "write angles in degrees, 0 to 90 and 0 to 180",
+            ));
+        }
         let (nt, np) = (theta.len(), phi.len());
         let size = nt.checked_mul(nt).and_then(|n| n.checked_mul(np));
         let complete = size.filter(|n| *n <= 4 * lines.len());

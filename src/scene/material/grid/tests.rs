@@ -100,6 +100,10 @@ fn wrong_tables_are_refused_with_their_line() {
         (format!("{h}\n0,0,zero,0.1\n"), "line 2"),
         (format!("{h}\n0,91,0,0.1\n"), "line 2: θ_o is 91°"),
         (format!("{h}\n0,0,200,0.1\n"), "line 2: φ is 200°"),
+        (
+            format!("{h}\n0,0,0,0.1\n0,1.57,0,0.1\n1.57,0,0,0.1\n1.57,1.57,0,0.1\n"),
+            "polar angles end at 1.57, as if they were in radians",
+        ),
         (format!("{h}\n0,0,NaN,0.1\n"), "line 2: φ is NaN°"),
         (format!("{h}\n0,0,0,-0.1\n"), "line 2: a BRDF of -0.1"),
         (format!("{h}\n0,0,0,inf\n"), "line 2: a BRDF of inf"),
