@@ -168,9 +168,10 @@ mod tests {
         };
         assert!(off(&found.stderr) < off(&stderr) / 3.0);
         let own = found.certainty.pooled_from.unwrap();
-        let error = 5.0 / 2400.0_f64.sqrt();
-        assert!((own.squares[0] - 1.0).abs() < error * 2.0_f64.sqrt());
-        assert!((own.squares[1] - 3.0).abs() < error * 96.0_f64.sqrt());
+        // By the scale; and s⁴ scatters by 2 √(2/ν) of itself.
+        assert!((own.squares[0] - 1.0).abs() < 1e-9);
+        let error = 6.0 * (2.0 / 31.0 / 2400.0_f64).sqrt();
+        assert!((own.squares[1] - 3.0).abs() < 5.0 * error);
         assert!((own.variance - 1.0).abs() < 0.05, "{own:?}");
         assert!(found.certainty.replicates.unwrap() > 100);
         let mut draw = normal(6);
