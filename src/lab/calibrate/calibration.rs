@@ -36,6 +36,9 @@ pub struct Calibrated {
     /// How far finer elements of the picture move it, where the photographs ask for them: a part of
     /// the error.
     pub by_elements: Option<f64>,
+    /// How far even light of 1 % of the mean that the model leaves out moves it; absent where other
+    /// light is estimated. No part of the error.
+    pub by_even_light: Option<f64>,
     /// Variance by what is no noise: other pictures, a finer rule where light is integrated, finer
     /// elements.
     pub beside_noise: f64,
@@ -87,6 +90,8 @@ pub struct Calibration {
     /// is not asked: of noise that is not stated or that entries share, and of light that all
     /// frames share and that is estimated.
     pub light_left_out: Vec<LightLeftOut>,
+    /// By how much the least χ² rises with even light of 1 % of the mean; absent likewise.
+    pub even_light_chi2: Option<f64>,
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.
     pub replicates: Option<u32>,

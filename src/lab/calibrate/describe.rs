@@ -256,6 +256,7 @@ impl Calibration {
         notes.extend([self.searched(), self.picture()]);
         notes.extend(self.beyond());
         notes.extend(self.light_beyond());
+        notes.extend(self.even_light());
         notes.extend(self.gains_beyond());
         let by_pictures = self.by_pictures();
         if !by_pictures.is_empty() {

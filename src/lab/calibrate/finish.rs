@@ -75,7 +75,9 @@ impl CalibrationPlan {
         // Along the cosines there are no blocks of pixels.
         let by_blocks = (more_than_noise && field.is_none()).then(|| by(Group::Block));
         let by_blocks = by_blocks.transpose()?;
-        let light_left_out = problem.light_left_out(best, of, &information)?;
+        let sums = problem.sums(best, of)?;
+        let light_left_out = problem.light_left_out(best, &sums, &information);
+        let even_light = problem.even_light(best, &sums, &information);
         drop(columns);
         let scene = problem.geometry.scene;
         let names = self.names(problem);
@@ -122,6 +124,7 @@ impl CalibrationPlan {
                 by_pictures: by_pictures[k],
                 by_rule,
                 by_elements,
+                by_even_light: even_light.as_ref().map(|even| even.moved[k]),
                 beside_noise: pictures.max(0.0) + finer,
                 identified,
                 profile,
@@ -163,6 +166,7 @@ impl CalibrationPlan {
             untold,
             beforehand: Beforehand::of(&found[..problem.geometry.parameters.len()], &covariance),
             light_left_out,
+            even_light_chi2: even_light.map(|even| even.chi2),
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),

@@ -1,4 +1,5 @@
-//! Whether what is left over looks like light that the model leaves out.
+//! Whether what is left over looks like light that the model leaves out, and how far such light
+//! moves the geometry.
 //!
 //! Light S a, of patterns S that all frames share and sizes a that nothing says, picture and
 //! geometry following, would change the cost by −½ gᵀF⁻¹g, all whitened:
@@ -6,10 +7,14 @@
 //! > g = Sᵀ(y − Aρ̂),   F = SᵀS − SᵀA P AᵀS − SᵀB⊥ (F_θ + Λ)⁻¹ B⊥ᵀS
 //!
 //! and without such light gᵀF⁻¹g is χ² (score test, Rao 1948). χ² of all entries hardly sees it: a
-//! geometry that takes it up is off by many of its errors, and fits.
+//! geometry that takes it up is off by many of its errors, and fits. To first order light S a that
+//! is there moves the estimate and raises the least of χ² with its priors by
+//!
+//! > δθ = (F_θ + Λ)⁻¹ B⊥ᵀS a,   δχ² = aᵀF a
 
 use std::ops::Range;
 
+use nalgebra::DVector;
 use serde::Serialize;
 
 use super::descent::{Problem, State};
@@ -23,6 +28,8 @@ use crate::num::linalg::{Cholesky, product, tr_product};
 
 /// What of a pattern must be left by other light, picture and geometry, over all of it.
 const LEFT: f64 = 1e-6;
+/// Even light, over the mean light, whose effect is told.
+const PERCENT: f64 = 0.01;
 
 /// The patterns of [`over_view`], of the light that is found.
 const KINDS: [(&str, &str, Range<usize>); 2] = [
@@ -54,33 +61,50 @@ pub struct LightLeftOut {
     pub p: f64,
 }
 
-/// SᵀS, AᵀS and B⊥ᵀS, g, and the squares of S before other light took any.
-struct Sums {
+/// SᵀS, AᵀS and B⊥ᵀS, g, the squares of S before other light took any, and the mean of the light
+/// that is found, W.
+pub(super) struct Sums {
     own: Matrix,
     light: Matrix,
     geometry: Matrix,
     score: Matrix,
     whole: Vec<f64>,
+    mean: f64,
+}
+
+/// What 1 % of the mean light does that every entry has and the model leaves out.
+pub(super) struct EvenLight {
+    /// δθ.
+    pub moved: DVector<f64>,
+    /// δχ².
+    pub chi2: f64,
+}
+
+impl Sums {
+    /// F.
+    fn information(&self, best: &State, information: &Cholesky) -> Matrix {
+        let towards = information.forward(self.geometry.clone());
+        let picture = product(&best.slope.covariance, &self.light);
+        &self.own - tr_product(&self.light, &picture) - tr_product(&towards, &towards)
+    }
 }
 
 impl Problem<'_> {
     /// Each kind of pattern against what is left of photographs whose noise is stated, is each
-    /// entry's own, and is not along cosines or less the mean of the frames.
+    /// entry's own, and is not along cosines; nothing where light that all frames share is
+    /// estimated.
     pub(super) fn light_left_out(
         &self,
         best: &State,
-        (light, columns): (&Light, &[Columns]),
+        sums: &Sums,
         information: &Cholesky,
-    ) -> Result<Vec<LightLeftOut>, LabError> {
+    ) -> Vec<LightLeftOut> {
         let known = self.photographs.certainty;
         let is_own = known.errors == Errors::Independent && self.photographs.stderr.is_some();
         if !is_own || self.cosines.is_some() || self.common.is_some() {
-            return Ok(Vec::new());
+            return Vec::new();
         }
-        let sums = self.sums(best, (light, columns))?;
-        let towards = information.forward(sums.geometry.clone());
-        let picture = product(&best.slope.covariance, &sums.light);
-        let f = &sums.own - tr_product(&sums.light, &picture) - tr_product(&towards, &towards);
+        let f = sums.information(best, information);
         let of = |(what, cure, kind): &(&'static str, &'static str, Range<usize>)| {
             let told = kind.clone().filter(|k| f[(*k, *k)] > LEFT * sums.whole[*k]);
             let told: Vec<usize> = told.collect();
@@ -96,10 +120,33 @@ impl Problem<'_> {
                 p: known.by_noise(chi2, directions as f64),
             })
         };
-        Ok(KINDS.iter().filter_map(of).collect())
+        KINDS.iter().filter_map(of).collect()
     }
 
-    fn sums(&self, best: &State, (light, b): (&Light, &[Columns])) -> Result<Sums, LabError> {
+    /// What 1 % of even light does; none where other light is estimated.
+    pub(super) fn even_light(
+        &self,
+        best: &State,
+        sums: &Sums,
+        information: &Cholesky,
+    ) -> Option<EvenLight> {
+        if self.common.is_some() || self.photographs.patterns.is_some() {
+            return None;
+        }
+        let size = PERCENT * sums.mean;
+        let f = sums.information(best, information);
+        Some(EvenLight {
+            moved: information.solve(&(sums.geometry.column(0) * size)),
+            chi2: f[(0, 0)] * size * size,
+        })
+    }
+
+    /// At the estimate.
+    pub(super) fn sums(
+        &self,
+        best: &State,
+        (light, b): (&Light, &[Columns]),
+    ) -> Result<Sums, LabError> {
         let seen = self.seen(best.factor);
         let (rho, columns) = (&best.value.rho, self.geometry.scene.camera.columns);
         let (n, all) = (light.elements(), KINDS[1].2.end);
@@ -109,13 +156,16 @@ impl Problem<'_> {
             geometry: Matrix::zeros(self.unknowns(), all),
             score: Matrix::zeros(all, 1),
             whole: vec![0.0; all],
+            mean: 0.0,
         };
+        let frames = b.len() as f64;
         for (l, own) in b.iter().enumerate() {
             let [y, a] = seen.frame(light, l)?;
             let b = &own.b - product(&a, &best.slope.shift);
             let shape = light.frame(l) * rho;
             let shape = Matrix::from_column_slice(shape.len(), 1, shape.as_slice());
-            let s = over_view(&shape, columns);
+            sums.mean += shape.mean() / frames;
+            let s = seen.along(over_view(&shape, columns));
             let roots = self.photographs.roots(l);
             for (k, whole) in sums.whole.iter_mut().enumerate() {
                 let each = s.column(k).component_mul(&roots);

@@ -76,7 +76,7 @@ impl Seen<'_> {
     }
 
     /// Light as the photographs are.
-    fn along(&self, light: Matrix) -> Matrix {
+    pub(super) fn along(&self, light: Matrix) -> Matrix {
         match self.cosines {
             Some(frame) => along_cosines(&light, frame),
             None => light,

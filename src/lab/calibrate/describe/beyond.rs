@@ -11,6 +11,8 @@ use crate::recovery::Deviations;
 
 /// Probability of a single parameter as far off, of all that were known.
 const FAR: f64 = 0.01;
+/// Even light that dark frames may leave, in percents of the mean light.
+const DARK_FRAMES: f64 = 1.0;
 /// More than this share of a misfit is most of it.
 const MOST: f64 = 0.5;
 
@@ -47,6 +49,26 @@ impl Calibration {
                 light.directions,
                 figure(light.p, 1),
                 light.cure
+            )
+        })
+    }
+
+    /// The parameter that even light moves most, over its error, where less does than dark frames may
+    /// leave.
+    pub(super) fn even_light(&self) -> Option<String> {
+        let rise = self.even_light_chi2?;
+        let over = |f: &'_ Calibrated| f.by_even_light.map_or(0.0, |moved| moved.abs() / f.stderr);
+        let most = self.geometry().max_by(|a, b| over(a).total_cmp(&over(b)))?;
+        let percents = over(most).recip();
+        (percents < DARK_FRAMES).then(|| {
+            format!(
+                "Even light of {} % of the mean that is left in the photographs would move {} by one of its errors, and \
+                 raise χ² by {} where noise alone scatters it by {}: if there may be as much, `--frame-polynomial 0` \
+                 estimates it, at the cost of larger errors.",
+                figure(percents, 1),
+                most.name,
+                figure(rise * percents * percents, 1),
+                figure((2.0 * self.dof).sqrt(), 2)
             )
         })
     }

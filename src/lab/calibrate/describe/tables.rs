@@ -47,6 +47,10 @@ impl Calibration {
                         Column::number("by finer elements", "by_elements", "", 2),
                         |f| f.by_elements.into(),
                     ),
+                    (
+                        Column::number("by 1 % of even light", "by_even_light", "", 2),
+                        |f| f.by_even_light.into(),
+                    ),
                 ],
             )
         }
