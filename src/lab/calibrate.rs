@@ -49,6 +49,7 @@
 //! its place has no slope, and the search may not end.
 
 mod beforehand;
+mod brightest;
 mod calibration;
 mod common;
 mod descent;

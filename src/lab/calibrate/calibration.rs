@@ -92,6 +92,9 @@ pub struct Calibration {
     pub light_left_out: Vec<LightLeftOut>,
     /// By how much the least χ² rises with even light of 1 % of the mean; absent likewise.
     pub even_light_chi2: Option<f64>,
+    /// What is left of the brightest percent of entries over their noise, on average; absent of
+    /// noise that is not stated and where light that all frames share is estimated.
+    pub brightest: Option<f64>,
     /// Replicates as from which the stated noise is known, pooled over pixels and spots where these
     /// are few; absent where it is known or not stated.
     pub replicates: Option<u32>,

@@ -27,6 +27,9 @@ const LISTED: usize = 12;
 /// What is left of other light's remainder beyond the stated noise, above which nothing is
 /// estimated.
 const MUCH: f64 = 0.05;
+/// The brightest entries are left over if they lie below the model by so many times what is left of
+/// all.
+const BRIGHTEST: f64 = 2.0;
 
 fn with_unit(x: f64, digits: usize, unit: &str) -> String {
     format!("{} {unit}", figure(x, digits))
@@ -166,10 +169,12 @@ impl Calibration {
                 figure(self.misfit, 3),
                 perhaps(self.finer_misfit, 3)
             ),
-            Some(_) => "The model lacks something, or something is wrong that is not free: the order \
-                 of the spots, say. Errors are the largest of three: by the noise, by what single \
-                 frames and by what blocks of pixels say; none of them sees what is wrong in all alike."
-                .to_owned(),
+            Some(_) => format!(
+                "The model lacks something, or something is wrong that is not free: {}. Errors are the \
+                 largest of three: by the noise, by what single frames and by what blocks of pixels \
+                 say; none of them sees what is wrong in all alike.",
+                self.wrong()
+            ),
             None => {
                 let much = if self.unexplained() > MUCH {
                     " That is much: the model lacks something."
@@ -186,6 +191,21 @@ impl Calibration {
                     figure(self.left, 3)
                 )
             }
+        }
+    }
+
+    /// What may be wrong.
+    fn wrong(&self) -> String {
+        let rms = self.misfit.sqrt();
+        match self.brightest.filter(|left| *left < -BRIGHTEST * rms) {
+            Some(left) => format!(
+                "values that are clipped or not linear (saturation, gamma), for the brightest percent \
+                 of the entries lies below the model by {} times its noise on average, and all by {} \
+                 (rms)",
+                figure(-left, 2),
+                figure(rms, 2)
+            ),
+            None => "the order of the spots, say".to_owned(),
         }
     }
 

@@ -78,6 +78,7 @@ impl CalibrationPlan {
         let sums = problem.sums(best, of)?;
         let light_left_out = problem.light_left_out(best, &sums, &information);
         let even_light = problem.even_light(best, &sums, &information);
+        let brightest = problem.brightest(best, &light)?;
         drop(columns);
         let scene = problem.geometry.scene;
         let names = self.names(problem);
@@ -167,6 +168,7 @@ impl CalibrationPlan {
             beforehand: Beforehand::of(&found[..problem.geometry.parameters.len()], &covariance),
             light_left_out,
             even_light_chi2: even_light.map(|even| even.chi2),
+            brightest,
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
             shared: known.errors.shared().filter(|_| is_noise_known),

@@ -61,6 +61,31 @@ fn photographs_of_no_geometry_come_with_that_verdict_first() {
     assert!(wrong.contains("these are no estimates"), "{wrong}");
 }
 
+/// Of photographs that are clipped at 93 % of their brightest it is told that the brightest entries
+/// are left over; of those in another order not.
+#[test]
+fn clipped_photographs_are_told_from_others() {
+    let scene = small("bench", 8);
+    let (phi, stderr) = photographs(&scene, 4, 1e-3, 5);
+    let (most, last) = (0.93 * phi.max(), phi.ncols() - 1);
+    let reversed = Matrix::from_fn(phi.nrows(), phi.ncols(), |p, l| phi[(p, last - l)]);
+    for (phi, is_clipped) in [(phi.map(|x| x.min(most)), true), (reversed, false)] {
+        let plan = plan(&["hidden.normal"], 4);
+        let found = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+        let notes = found.unwrap().describe().notes.concat();
+        assert_eq!(
+            notes.contains("values that are clipped"),
+            is_clipped,
+            "{notes}"
+        );
+        assert_eq!(
+            notes.contains("the order of the spots, say"),
+            !is_clipped,
+            "{notes}"
+        );
+    }
+}
+
 /// A board that is turned where only its distance is free: its light by a finer rule leaves as
 /// much, so that the photographs refute it however coarse its elements are.
 #[test]
