@@ -1462,7 +1462,7 @@ BREAKS = [
         "common.take_out(&mut b);",
         "let _ = (&mut b, common);",
         "lib",
-        "lab::calibrate::common::tests::the_geometry_is_found_in_bright_light",
+        "lab::calibrate::tests::common::the_geometry_is_found_in_bright_light",
         9,
     ),
     Break(
@@ -1471,7 +1471,7 @@ BREAKS = [
         "all.count -= self.common.map_or(0.0, Common::directions);",
         "all.count -= self.common.map_or(0.0, |_| 0.0);",
         "lib",
-        "lab::calibrate::common::tests::slopes_beside_a_background_are_those_of_the_cost",
+        "lab::calibrate::tests::common::slopes_beside_a_background_are_those_of_the_cost",
         10,
     ),
     Break(
@@ -1480,7 +1480,7 @@ BREAKS = [
         "Some(mean) => own - mean,",
         "Some(mean) => own - mean * 0.9,",
         "lib",
-        "lab::calibrate::common::tests::the_cost_is_that_of_a_dense_normal_distribution_beside_a_background",
+        "lab::calibrate::tests::common::the_cost_is_that_of_a_dense_normal_distribution_beside_a_background",
         11,
     ),
     Break(

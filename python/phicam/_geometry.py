@@ -195,6 +195,7 @@ def locate(
     occlusion: bool = True,
     integration: Integration = "quadrature",
     frame_polynomial: int | None = None,
+    background: bool = False,
     orders: int = 999,
     seed: int = 1,
     threads: int | None = None,
@@ -212,6 +213,8 @@ def locate(
         given.
     steps : int
         Sizes tried first.
+    background : bool
+        Whether there is other light that all frames share, unknown in each pixel.
     orders : int
         Random orders of the spots that are tried; 0 leaves that question out.
 
@@ -244,7 +247,8 @@ def locate(
         stderr,
         flags,
         replicates=phi.replicates,
-        errors_name=phi.errors,
+        # A background takes what all spots of a pixel of photographs share.
+        errors_name="independent" if background and not phi.is_rendered else phi.errors,
         what=what,
         range=(low, high),
         steps=count,
@@ -252,6 +256,7 @@ def locate(
         considered=bool(occlusion),
         integration_name=integration,
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
+        background=bool(background),
         orders=tried,
         seed=whole(seed, "seed"),
         threads=threads_of(threads),

@@ -207,6 +207,7 @@ def locate(
     considered: bool,
     integration_name: str,
     frame_polynomial: int | None,
+    background: bool,
     orders: int,
     seed: int,
     threads: int | None,

@@ -134,7 +134,7 @@ pub fn calibrate<'py>(
 /// Where something is, by the likeliest of some sizes.
 #[pyfunction]
 #[pyo3(signature = (scene, phi, stderr, left_out, *, replicates, errors_name, what, range, steps, elements, considered, integration_name,
-                    frame_polynomial, orders, seed, threads, progress))]
+                    frame_polynomial, background, orders, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
     reason = "one for each keyword of Python's function"
@@ -154,6 +154,7 @@ pub fn locate<'py>(
     considered: bool,
     integration_name: &str,
     frame_polynomial: Option<u8>,
+    background: bool,
     orders: u64,
     seed: u64,
     threads: Option<usize>,
@@ -171,6 +172,7 @@ pub fn locate<'py>(
         elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),
         integration: integration(integration_name)?,
+        background,
         orders,
         seed,
     };

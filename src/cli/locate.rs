@@ -29,7 +29,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
         &args.dir,
         (&scene, &record),
         args.left_out.as_deref(),
-        (args.frame_polynomial, false),
+        (args.frame_polynomial, args.background),
     )?;
     let output = args
         .output
@@ -71,6 +71,7 @@ fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
         elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
         integration: args.integration,
+        background: args.background,
         orders: u64::from(args.orders),
         seed: args.seed,
     }
@@ -87,6 +88,7 @@ fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
         .pair("--range", args.range, ",")
         .pair("--elements", args.elements, "x")
         .maybe("--frame-polynomial", args.frame_polynomial)
+        .flag("--background", args.background)
         .file("--left-out", args.left_out.as_deref())
         .flag("--no-occlusion", args.occlusion.no_occlusion)
         .of_folder("locate", &args.dir, scene)

@@ -51,7 +51,6 @@
 mod beforehand;
 mod brightest;
 mod calibration;
-mod common;
 mod descent;
 mod describe;
 mod elements;
@@ -76,9 +75,9 @@ pub use descent::Stage;
 pub use elements::FinerElements;
 pub use free::Free;
 pub use identified::{Direction, Identified};
-pub use light_left_out::LightLeftOut;
 pub use profile::Profile;
 
+use super::common::Common;
 use super::error::LabError;
 use super::misplaced::normal;
 use super::refined::Refined;
@@ -87,7 +86,6 @@ use super::validation::Integration;
 use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
 use crate::scene::{Parameter, Scene};
 use crate::transport::Control;
-use common::Common;
 use descent::{Problem, first};
 use field::End;
 use geometry::{Geometry, distance};

@@ -10,11 +10,13 @@
 //! by the curvature of the profile likelihood, and by leaving out one of m frames after the other
 //! (jackknife; Efron and Stein, Annals of Statistics 9 (1981)). The first takes what is not
 //! explained for independent noise. Where the model lacks something, neighbouring pixels err alike
-//! and it is far too small; the frames still err by themselves.
+//! and it is far too small; the frames still err by themselves. What both miss is light that all
+//! frames share: it can be taken out ([`Common`]), and else is looked for ([`light`]).
 
 mod describe;
 mod found;
 mod frames;
+mod light;
 mod likelihood;
 mod mistaken;
 mod order;
@@ -31,6 +33,7 @@ pub(super) use frames::covariance_root;
 pub use mistaken::Mistaken;
 pub use order::Order;
 
+use super::common::Common;
 use super::error::LabError;
 use super::misplaced::{self, Misplaced};
 use super::problem::inverted;
@@ -40,7 +43,7 @@ use crate::model::{Effort, ElementGrid, Kernel, MatrixModel, Occlusion};
 use crate::scene::Scene;
 use crate::transport::Control;
 use found::Picture;
-use frames::{Side, TermsOf};
+use frames::{Seen, Sides, TermsOf};
 use mistaken::{Rearranged, likeliest};
 use picture::Pictured;
 use place::{Lengths, Place, frames_of, parabola};
@@ -85,6 +88,8 @@ pub struct LocatedPlan {
     pub occlusion: Occlusion,
     /// How the model integrates.
     pub integration: Integration,
+    /// Whether there is light that all frames share, unknown in each pixel.
+    pub background: bool,
     /// Random orders of the spots that are tried.
     pub orders: u64,
     /// Their seed.
@@ -108,6 +113,16 @@ impl LocatedPlan {
         control: Control<'_>,
     ) -> Result<Located, LabError> {
         photographs.check()?;
+        let common = (self.background).then(|| Common::new(photographs, false));
+        let common = common.transpose()?;
+        let photographs = &Unexplained {
+            phi: common.as_ref().map_or(photographs.phi, |own| &own.phi),
+            ..*photographs
+        };
+        let seen = Seen {
+            photographs: *photographs,
+            common: common.as_ref(),
+        };
         let altered = self.misplaced()?;
         if altered.is_of_the_picture(scene) {
             return Err(WITHIN_ITS_PLANE);
@@ -122,9 +137,7 @@ impl LocatedPlan {
         let place = |size: f64, each_out: bool| -> Result<Option<Place>, LabError> {
             control.check()?;
             let found = match altered.apply(scene, size) {
-                Some(scene) => {
-                    Place::new(size, &self.model(&scene)?, photographs, &lengths, each_out)?
-                }
+                Some(scene) => Place::new(size, &self.model(&scene)?, seen, &lengths, each_out)?,
                 None => None,
             };
             (control.progress)(1);
@@ -189,10 +202,13 @@ impl LocatedPlan {
         let best = best.ok_or(LabError::DARK)?;
         let log_likelihood = best.log_likelihood();
         let stated = [log_likelihood, best.fit.misfit];
-        let (order, mistaken) = self.orders(scene, photographs, (&lengths, stated), control)?;
+        let (order, mistaken) = self.orders(scene, seen, (&lengths, stated), control)?;
         let there = altered
             .apply(scene, best.size)
             .unwrap_or_else(|| scene.clone());
+        let nearby = peak.map_or(step, |peak| peak.stderr);
+        let at = (best.size, nearby);
+        let light_left_out = self.light_left_out((scene, altered), at, seen, &lengths)?;
         let mut curve: Vec<&Place> = all().collect();
         curve.sort_by(|a, b| a.size.total_cmp(&b.size));
         let likelihood = |p: &&Place| Likelihood {
@@ -216,12 +232,13 @@ impl LocatedPlan {
             log_likelihood,
             noise: best.fit.noise,
             elements: model.albedo.len(),
-            picture: self.picture(&there, photographs, &lengths)?,
+            picture: self.picture(&there, seen, &lengths)?,
             order,
             mistaken,
             entries: photographs.counted(),
             frames: photographs.phi.ncols(),
             is_noise_known: photographs.stderr.is_some(),
+            light_left_out,
             shared: photographs.certainty.errors.shared(),
         })
     }
@@ -247,11 +264,11 @@ impl LocatedPlan {
     fn picture(
         &self,
         scene: &Scene,
-        photographs: &Unexplained<'_>,
+        seen: Seen<'_>,
         lengths: &Lengths,
     ) -> Result<Option<Picture>, LabError> {
         let model = self.model(scene)?;
-        let frames = frames_of(&model, photographs)?;
+        let frames = frames_of(&model, seen)?;
         let found = Pictured::new(&frames, &lengths.roots)?;
         Ok(found.map(|found| Picture {
             grids: grids(&model, &found),
@@ -267,23 +284,23 @@ impl LocatedPlan {
     fn orders(
         &self,
         scene: &Scene,
-        photographs: &Unexplained<'_>,
+        seen: Seen<'_>,
         (lengths, stated): (&Lengths, [f64; 2]),
         control: Control<'_>,
     ) -> Result<(Option<Order>, Option<Mistaken>), LabError> {
-        if self.orders == 0 || photographs.phi.ncols() < 2 {
+        if self.orders == 0 || seen.photographs.phi.ncols() < 2 {
             return Ok((None, None));
         }
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
         let element: Vec<usize> = (0..model.albedo.len()).collect();
         let terms = TermsOf::centres(&model, &element);
         let root = covariance_root(&model.places, lengths.fixed)?;
-        let sides = Side::all(photographs, terms.camera)?;
+        let sides = Sides::new(seen, terms.camera)?;
         let tried = [self.orders, self.seed];
         let order = order::order(&sides, terms, &root, tried, control)?;
         let frame = [scene.camera.columns, scene.camera.rows];
         let all = Rearranged::all(frame, sides.len());
-        let Some(other) = likeliest((photographs, &sides), terms, &root, all)? else {
+        let Some(other) = likeliest((seen, &sides), terms, &root, all)? else {
             return Ok((order, None));
         };
         let again = Self { orders: 0, ..*self };
@@ -291,7 +308,7 @@ impl LocatedPlan {
             progress: &|_| (),
             ..control
         };
-        let own = other.of(photographs);
+        let own = other.of(&seen.photographs);
         let found = again.locate(scene, &own.unexplained(), quiet)?;
         let misfit = found.curve.iter().find(|at| at.log_likelihood == 0.0);
         let misfit = misfit.map_or(f64::INFINITY, |at| at.misfit);

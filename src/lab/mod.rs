@@ -148,6 +148,7 @@ mod calibrate;
 mod certainty;
 mod check;
 mod chosen;
+mod common;
 mod convergence;
 mod counted;
 mod coverage;
@@ -171,6 +172,7 @@ mod indicator;
 mod inversion;
 mod layout;
 mod light_law;
+mod light_left_out;
 mod likelier;
 mod limit;
 mod located;
@@ -233,7 +235,7 @@ pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
 pub use calibrate::{
     Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
-    Identified, LightLeftOut, Profile, Stage, Starts,
+    Identified, Profile, Stage, Starts,
 };
 pub use certainty::{Certainty, Errors, PooledFrom};
 pub use chosen::{Beside, Chosen};
@@ -256,6 +258,7 @@ pub use indicator::{
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
 pub use light_law::LightLaw;
+pub use light_left_out::LightLeftOut;
 pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order};
 pub use measured::{Measured, ValidationError};
 pub use measures::Measures;

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::matrix::Matrix;
+use crate::num::linalg::tr_product;
 
 /// What photographs y say of the reflectances ρ by their light A, both in units of the noise:
 /// ‖y − Aρ‖² = s − 2 hᵀρ + ρᵀHρ.
@@ -19,6 +20,19 @@ pub(super) struct Normal {
 }
 
 impl Normal {
+    /// Of `columns`, the light of each element and the photograph, in units of the noise, of which
+    /// `count` entries count.
+    pub(super) fn of(columns: &Matrix, count: f64) -> Self {
+        let n = columns.ncols() - 1;
+        let all = tr_product(columns, columns);
+        Self {
+            h: all.view((0, 0), (n, n)).into_owned(),
+            side: all.view((0, n), (n, 1)).column(0).into_owned(),
+            square: all[(n, n)],
+            count,
+        }
+    }
+
     /// All of `frames` together.
     pub(super) fn sum<'a>(frames: impl Iterator<Item = &'a Self>, elements: usize) -> Self {
         let nothing = Self {
@@ -33,14 +47,6 @@ impl Normal {
             all.square += frame.square;
             all.count += frame.count;
             all
-        })
-    }
-
-    /// All of `frames` but one, each left out in turn.
-    pub(super) fn all_but_one(frames: &[Self], elements: usize) -> impl Iterator<Item = Self> + '_ {
-        (0..frames.len()).map(move |out| {
-            let others = frames.iter().enumerate().filter(move |(l, _)| *l != out);
-            Self::sum(others.map(|(_, frame)| frame), elements)
         })
     }
 

@@ -80,4 +80,8 @@ fn what_cannot_be_looked_for_is_refused() {
     w.refuses("locate run --what depth", &["normal", "angle"]);
     w.refuses("locate run --steps 2", &["3..=1000"]);
     w.refuses("locate run --range 1,0", &["LOW,HIGH"]);
+    w.refuses(
+        "locate run --background --frame-polynomial 0",
+        &["--background", "--frame-polynomial"],
+    );
 }

@@ -37,6 +37,9 @@ pub(in crate::cli) struct LocateArgs {
     /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8
     #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]
     pub frame_polynomial: Option<u8>,
+    /// Other light that all frames share, unknown in each pixel
+    #[arg(long, conflicts_with = "frame_polynomial")]
+    pub background: bool,
     /// Entries that do not count, pixels × spots: those that are not 0; left_out.npy or
     /// phi.tails.npy of the run unless given
     #[arg(long, value_name = "FILE")]

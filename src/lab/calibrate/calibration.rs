@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Beforehand, Direction, FinerElements, Identified, LightLeftOut, Profile, Stage};
+use super::{Beforehand, Direction, FinerElements, Identified, Profile, Stage};
+use crate::lab::light_left_out::LightLeftOut;
 use crate::lab::located::Grid;
 use crate::recovery::ErrorField;
 

@@ -10,10 +10,10 @@
 
 use nalgebra::DVector;
 
-use super::common::Common;
 use super::geometry::{Geometry, Light};
 use super::picture::Prior;
 use super::posterior::{Seen, Slope, Value};
+use crate::lab::common::Common;
 use crate::lab::error::LabError;
 use crate::lab::normal::Normal;
 use crate::lab::unexplained::Unexplained;

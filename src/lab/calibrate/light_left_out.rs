@@ -12,54 +12,20 @@
 //!
 //! > δθ = (F_θ + Λ)⁻¹ B⊥ᵀS a,   δχ² = aᵀF a
 
-use std::ops::Range;
-
 use nalgebra::DVector;
-use serde::Serialize;
 
 use super::descent::{Problem, State};
 use super::geometry::Light;
 use super::posterior::Columns;
 use crate::lab::certainty::Errors;
 use crate::lab::error::LabError;
-use crate::lab::over_view::over_view;
+use crate::lab::light_left_out::LightLeftOut;
+use crate::lab::over_view::{PATTERNS, over_view};
 use crate::matrix::Matrix;
 use crate::num::linalg::{Cholesky, product, tr_product};
 
-/// What of a pattern must be left by other light, picture and geometry, over all of it.
-const LEFT: f64 = 1e-6;
 /// Even light, over the mean light, whose effect is told.
 const PERCENT: f64 = 0.01;
-
-/// The patterns of [`over_view`], of the light that is found.
-const KINDS: [(&str, &str, Range<usize>); 2] = [
-    (
-        "light that all frames share (even, or a slope over the view)",
-        "estimate it (--background, --frame-polynomial), or take dark frames",
-        0..3,
-    ),
-    (
-        "a falloff of the camera over its view",
-        "divide by a flat field",
-        3..6,
-    ),
-];
-
-/// Patterns that would explain what is left over.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct LightLeftOut {
-    /// What they are.
-    pub what: &'static str,
-    /// What helps against it.
-    #[serde(skip)]
-    pub cure: &'static str,
-    /// gᵀF⁻¹g.
-    pub chi2: f64,
-    /// How many of them the photographs tell from picture and geometry.
-    pub directions: usize,
-    /// Probability of as large a sum by noise alone.
-    pub p: f64,
-}
 
 /// SᵀS, AᵀS and B⊥ᵀS, g, the squares of S before other light took any, and the mean of the light
 /// that is found, W.
@@ -105,22 +71,8 @@ impl Problem<'_> {
             return Vec::new();
         }
         let f = sums.information(best, information);
-        let of = |(what, cure, kind): &(&'static str, &'static str, Range<usize>)| {
-            let told = kind.clone().filter(|k| f[(*k, *k)] > LEFT * sums.whole[*k]);
-            let told: Vec<usize> = told.collect();
-            let own = f.select_rows(&told).select_columns(&told);
-            let factor = Cholesky::new(&own).filter(|_| !told.is_empty())?;
-            let chi2 = factor.forward(sums.score.select_rows(&told)).norm_squared();
-            let directions = told.len();
-            Some(LightLeftOut {
-                what,
-                cure,
-                chi2,
-                directions,
-                p: known.by_noise(chi2, directions as f64),
-            })
-        };
-        KINDS.iter().filter_map(of).collect()
+        let left = (&f, &sums.score, &sums.whole[..]);
+        LightLeftOut::of(left, |chi2, dof| known.by_noise(chi2, dof))
     }
 
     /// What 1 % of even light does; none where other light is estimated.
@@ -149,7 +101,7 @@ impl Problem<'_> {
     ) -> Result<Sums, LabError> {
         let seen = self.seen(best.factor);
         let (rho, columns) = (&best.value.rho, self.geometry.scene.camera.columns);
-        let (n, all) = (light.elements(), KINDS[1].2.end);
+        let (n, all) = (light.elements(), PATTERNS);
         let mut sums = Sums {
             own: Matrix::zeros(all, all),
             light: Matrix::zeros(n, all),

@@ -13,9 +13,9 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::common::Common;
 use super::geometry::Light;
 use super::picture::{Prior, white};
+use crate::lab::common::Common;
 use crate::lab::error::LabError;
 use crate::lab::normal::Normal;
 use crate::lab::unexplained::Unexplained;

@@ -1,6 +1,7 @@
 //! The likelihood against a dense normal distribution, its slope against differences.
 
 mod beforehand;
+mod common;
 mod errors;
 mod estimates;
 mod light_left_out;

@@ -6,6 +6,7 @@ use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
     Shades, Table, Tone,
 };
+use crate::lab::light_left_out::LightLeftOut;
 use crate::num::digits::figure;
 
 /// Probability of an order by chance below which the stated one counts as found.
@@ -71,6 +72,19 @@ impl Located {
     /// Whether the likeliest reflectances leave no more than the stated noise.
     fn is_explained(&self) -> bool {
         self.is_noise_known && self.noise <= MUCH
+    }
+
+    /// Light that would explain most of what is more than noise; all of it where none is stated.
+    fn left_out_light(&self) -> impl Iterator<Item = &LightLeftOut> {
+        let entries = self.entries as f64;
+        let misfit = if self.is_explained() {
+            0.0
+        } else if self.is_noise_known {
+            (self.noise * self.noise - 1.0) * entries
+        } else {
+            entries
+        };
+        LightLeftOut::likely(&self.light_left_out, misfit)
     }
 
     /// Whether the photographs belong to their spots.
@@ -242,6 +256,7 @@ impl Describe for Located {
         let mut notes = vec![self.errors(), self.explained()];
         let which = self.shared.filter(|_| self.is_noise_known);
         notes.extend(which.map(|which| hang_together(which, "the place", "take more")));
+        notes.extend(self.left_out_light().map(|light| light.beware("place")));
         notes.extend(self.brightest());
         notes.push(self.ordered());
         let points = |of: fn(&super::Likelihood) -> f64| -> Vec<[f64; 2]> {
@@ -279,10 +294,12 @@ impl Describe for Located {
         };
         Finding {
             title,
-            tone: if self.is_found() {
-                Tone::Good
-            } else {
+            tone: if !self.is_found() {
                 Tone::Bad
+            } else if self.left_out_light().next().is_some() {
+                Tone::Plain
+            } else {
+                Tone::Good
             },
             sentence: self.sentence(),
             notes,

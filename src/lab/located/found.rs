@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::mistaken::Mistaken;
 use super::order::Order;
+use crate::lab::light_left_out::LightLeftOut;
 
 /// How likely one size is.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -99,6 +100,9 @@ pub struct Located {
     pub entries: usize,
     /// Frames.
     pub frames: usize,
+    /// Kinds of light that the model leaves out, by what is left over; none where errors of entries
+    /// hang together, and beside a background.
+    pub light_left_out: Vec<LightLeftOut>,
     /// Whether standard errors are stated.
     pub is_noise_known: bool,
     /// Which entries share their errors, where they do: no frame left out shows that.

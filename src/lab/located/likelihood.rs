@@ -2,10 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::frames::{Side, TermsOf};
 use crate::lab::normal::Normal;
 use crate::matrix::Matrix;
-use crate::num::linalg::{LinalgError, product, svd, tr_product};
+use crate::num::linalg::{LinalgError, columns_times, product, svd, tr_product};
 use crate::num::search::largest;
 
 /// Signal-to-noise ratios μ₁/λ, 10⁻² to 10¹²; those that are tried by prediction, four a decade.
@@ -51,6 +50,16 @@ impl<'a> Spectrum<'a> {
     /// λ of μ₁/λ = exp(`log_ratio`).
     pub(super) fn lambda(&self, log_ratio: f64) -> f64 {
         self.mu[0] * libm::exp(-log_ratio)
+    }
+
+    /// A root R of the posterior covariance of ρ over ν², K^½ U (μ + λ)^−½: R Rᵀ.
+    pub(super) fn spread(&self, lambda: f64) -> Matrix {
+        let scale: Vec<f64> = self
+            .mu
+            .iter()
+            .map(|mu| 1.0 / (mu + lambda).sqrt())
+            .collect();
+        columns_times(product(self.root, &self.u), &scale)
     }
 
     /// Posterior mean of ρ.
@@ -103,22 +112,11 @@ pub(super) struct Fit {
     pub misfit: f64,
     /// ν, in units of the stated standard errors.
     pub noise: f64,
+    /// λ.
+    pub lambda: f64,
 }
 
 impl Fit {
-    /// To frames that are each lit by one of the spots.
-    ///
-    /// # Errors
-    /// [`LinalgError`].
-    pub(super) fn of_sides<'s>(
-        lit: impl Iterator<Item = (&'s Side, usize)>,
-        terms: TermsOf<'_>,
-        root: &Matrix,
-    ) -> Result<Option<Self>, LinalgError> {
-        let frames: Vec<Normal> = lit.map(|(side, spot)| side.lit(terms, spot)).collect();
-        Self::new(&Normal::sum(frames.iter(), terms.elements), root)
-    }
-
     /// The fit to `all` photographs with K^½ = `root`; none where there is no light.
     ///
     /// # Errors
@@ -133,6 +131,7 @@ impl Fit {
             log_likelihood,
             misfit: found.misfit(lambda),
             noise: (found.left(lambda) / all.count).sqrt(),
+            lambda,
         }))
     }
 }

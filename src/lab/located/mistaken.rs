@@ -10,11 +10,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frames::{Side, TermsOf};
+use super::frames::{Seen, Sides, TermsOf};
 use super::likelihood::Fit;
+use crate::lab::common::Common;
+use crate::lab::error::LabError;
 use crate::lab::unexplained::{Photographs, Unexplained};
 use crate::matrix::Matrix;
-use crate::num::linalg::LinalgError;
 
 /// Frames too early or too late that are tried.
 const MOST_SHIFT: usize = 8;
@@ -177,15 +178,15 @@ impl Rearranged {
 
 /// The likeliest order of `all` at the place of `terms`; none where that is the stated one.
 pub(super) fn likeliest(
-    (of, sides): (&Unexplained<'_>, &[Side]),
+    (seen, sides): (Seen<'_>, &Sides<'_>),
     terms: TermsOf<'_>,
     root: &Matrix,
     all: Vec<Rearranged>,
-) -> Result<Option<Rearranged>, LinalgError> {
+) -> Result<Option<Rearranged>, LabError> {
     // ln p and the misfit.
-    let fit = |sides: &[Side], frames: &[usize]| -> Result<[f64; 2], LinalgError> {
-        let lit = frames.iter().map(|l| &sides[*l]).zip(0..);
-        let found = Fit::of_sides(lit, terms, root)?;
+    let fit = |sides: &Sides<'_>, frames: &[usize]| -> Result<[f64; 2], LabError> {
+        let lit: Vec<(usize, usize)> = frames.iter().copied().zip(0..).collect();
+        let found = Fit::new(&sides.lit(&lit, terms), root)?;
         let dark = [f64::NEG_INFINITY, f64::INFINITY];
         Ok(found.map_or(dark, |fit| [fit.log_likelihood, fit.misfit]))
     };
@@ -193,9 +194,14 @@ pub(super) fn likeliest(
     let found = all.par_iter().map(|order| {
         // Frames are what they are in any order; pixels see other light in other places.
         if order.frames == stated {
-            let own = order.of(of);
-            let sides = Side::all(&own.unexplained(), terms.camera)?;
-            fit(&sides, &stated)
+            let own = order.of(&seen.photographs);
+            let again = seen.common.map(|_| Common::new(&own.unexplained(), false));
+            let common = again.transpose()?;
+            let turned = Seen {
+                photographs: own.unexplained(),
+                common: common.as_ref(),
+            };
+            fit(&Sides::new(turned, terms.camera)?, &stated)
         } else {
             fit(sides, &order.frames)
         }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frames::{Side, TermsOf};
+use super::frames::{Sides, TermsOf};
 use super::likelihood::Fit;
 use crate::lab::LabError;
 use crate::matrix::Matrix;
@@ -28,15 +28,15 @@ pub struct Order {
 
 /// The test with `tried` orders of `seed`; none where there is no light.
 pub(super) fn order(
-    sides: &[Side],
+    sides: &Sides<'_>,
     terms: TermsOf<'_>,
     root: &Matrix,
     [tried, seed]: [u64; 2],
     control: Control<'_>,
 ) -> Result<Option<Order>, LabError> {
     let fit = |spots: &[usize]| {
-        let lit = sides.iter().zip(spots.iter().copied());
-        Fit::of_sides(lit, terms, root).map_err(LabError::from)
+        let lit: Vec<(usize, usize)> = spots.iter().copied().enumerate().collect();
+        Fit::new(&sides.lit(&lit, terms), root).map_err(LabError::from)
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
     let Some(own) = fit(&stated)? else {

@@ -3,9 +3,9 @@
 use nalgebra::DVector;
 
 use super::Bright;
+use super::frames::Frames;
 use super::likelihood::{Spectrum, log_ratios};
 use super::place::jackknifed;
-use crate::lab::normal::Normal;
 use crate::matrix::Matrix;
 use crate::model::{ElementGrid, MatrixModel};
 use crate::num::linalg::LinalgError;
@@ -35,21 +35,19 @@ pub(super) struct Pictured {
 
 impl Pictured {
     /// From at least 3 frames, with each K^½ of `roots`; none of fewer, and without light.
-    pub(super) fn new(frames: &[Normal], roots: &[Matrix]) -> Result<Option<Self>, LinalgError> {
-        let Some(elements) = frames.first().map(|frame| frame.side.len()) else {
-            return Ok(None);
-        };
-        if frames.len() < 3 {
+    pub(super) fn new(frames: &Frames, roots: &[Matrix]) -> Result<Option<Self>, LinalgError> {
+        let each = &frames.each;
+        if each.len() < 3 {
             return Ok(None);
         }
-        let all = Normal::sum(frames.iter(), elements);
+        let all = frames.all();
+        let square: f64 = each.iter().map(|frame| frame.square).sum();
         let mut best: Option<(Vec<Trial>, f64)> = None;
         for root in roots {
             let Some(whole) = Spectrum::new(&all, root)? else {
                 return Ok(None);
             };
-            let parts =
-                Normal::all_but_one(frames, elements).map(|rest| Spectrum::new(&rest, root));
+            let parts = frames.all_but_one().map(|rest| Spectrum::new(&rest, root));
             let parts: Option<Vec<Spectrum<'_>>> = parts.collect::<Result<_, _>>()?;
             let Some(parts) = parts else {
                 return Ok(None);
@@ -57,7 +55,7 @@ impl Pictured {
             let trial = |log_ratio: f64| {
                 let lambda = whole.lambda(log_ratio);
                 let without: Vec<_> = parts.iter().map(|part| part.rho(lambda)).collect();
-                let left = frames
+                let left = each
                     .iter()
                     .zip(&without)
                     .map(|(frame, rho)| frame.left(rho));
@@ -80,7 +78,7 @@ impl Pictured {
         }
         let chosen = best.and_then(|(trials, _)| smoothest(trials));
         Ok(chosen.map(|trial| Self {
-            predicted: (trial.sum().max(0.0) / all.square).sqrt(),
+            predicted: (trial.sum().max(0.0) / square).sqrt(),
             ..trial.found
         }))
     }

@@ -1,12 +1,11 @@
 //! Photographs against the scene as it would be with one size.
 
 use crate::lab::normal::Normal;
-use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::model::{Factors, MatrixModel};
+use crate::model::MatrixModel;
 use crate::num::linalg::LinalgError;
 
-use super::frames::{TermsOf, covariance_root, normals};
+use super::frames::{Frames, Seen, TermsOf, covariance_root};
 use super::likelihood::Fit;
 
 /// Lengths ℓ of the prior, parts of the largest distance between elements.
@@ -47,22 +46,30 @@ impl Lengths {
 }
 
 /// The photographs against the terms of the elements of `model`.
-pub(super) fn frames_of(
-    model: &MatrixModel,
-    photographs: &Unexplained<'_>,
-) -> Result<Vec<Normal>, LinalgError> {
-    let elements = model.albedo.len();
-    let own: Vec<usize> = (0..elements).collect();
-    let terms = match &model.factors {
-        Some(Factors { terms, .. }) => TermsOf {
-            camera: &terms.camera,
-            laser: &terms.laser,
-            element: &terms.element,
-            elements,
-        },
-        None => TermsOf::centres(model, &own),
-    };
-    normals(photographs, terms)
+pub(super) fn frames_of(model: &MatrixModel, seen: Seen<'_>) -> Result<Frames, LinalgError> {
+    let own: Vec<usize> = (0..model.albedo.len()).collect();
+    Frames::new(seen, TermsOf::of(model, &own))
+}
+
+/// The fit to `all` photographs at the likeliest of these K^½, and that; none where there is no
+/// light.
+pub(super) fn likeliest_length<'a>(
+    all: &Normal,
+    roots: &'a [Matrix],
+) -> Result<Option<(Fit, &'a Matrix)>, LinalgError> {
+    let mut found: Option<(Fit, &Matrix)> = None;
+    for root in roots {
+        let Some(fit) = Fit::new(all, root)? else {
+            continue;
+        };
+        if found
+            .as_ref()
+            .is_none_or(|(best, _)| fit.log_likelihood > best.log_likelihood)
+        {
+            found = Some((fit, root));
+        }
+    }
+    Ok(found)
 }
 
 /// The fits at one size.
@@ -80,31 +87,17 @@ impl Place {
     pub(super) fn new(
         size: f64,
         model: &MatrixModel,
-        photographs: &Unexplained<'_>,
+        seen: Seen<'_>,
         lengths: &Lengths,
         each_out: bool,
     ) -> Result<Option<Self>, LinalgError> {
-        let elements = model.albedo.len();
-        let frames = frames_of(model, photographs)?;
-        let all = Normal::sum(frames.iter(), elements);
-        let mut found: Option<(Fit, &Matrix)> = None;
-        for root in &lengths.roots {
-            let Some(fit) = Fit::new(&all, root)? else {
-                continue;
-            };
-            if found
-                .as_ref()
-                .is_none_or(|(best, _)| fit.log_likelihood > best.log_likelihood)
-            {
-                found = Some((fit, root));
-            }
-        }
-        let Some((fit, root)) = found else {
+        let frames = frames_of(model, seen)?;
+        let Some((fit, root)) = likeliest_length(&frames.all(), &lengths.roots)? else {
             return Ok(None);
         };
         let mut without = Vec::new();
-        if each_out && frames.len() > 2 {
-            for rest in Normal::all_but_one(&frames, elements) {
+        if each_out && frames.each.len() > 2 {
+            for rest in frames.all_but_one() {
                 without.extend(Fit::new(&rest, root)?);
             }
         }

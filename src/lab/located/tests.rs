@@ -1,10 +1,11 @@
 //! The likelihood against a dense normal distribution; places against scenes that were moved.
 
+mod background;
 mod told;
 
 use nalgebra::DVector;
 
-use super::frames::{Side, TermsOf, covariance_root, normals};
+use super::frames::{Frames, Seen, Sides, TermsOf, covariance_root};
 use super::likelihood::{Fit, Spectrum};
 use super::{Located, LocatedPlan};
 use crate::lab::Integration;
@@ -61,6 +62,17 @@ impl Small {
             left_out: Some(&self.left_out),
             patterns: Some(&self.patterns),
         }
+    }
+
+    fn seen(&self) -> Seen<'_> {
+        Seen {
+            photographs: self.photographs(),
+            common: None,
+        }
+    }
+
+    fn frames(&self) -> Frames {
+        Frames::new(self.seen(), self.terms()).unwrap()
     }
 
     fn terms(&self) -> TermsOf<'_> {
@@ -122,8 +134,7 @@ impl Small {
 #[test]
 fn frames_are_the_normal_equations() {
     let small = Small::new();
-    let frames = normals(&small.photographs(), small.terms()).unwrap();
-    let all = Normal::sum(frames.iter(), 4);
+    let all = small.frames().all();
     let (data, model) = small.dense();
     let near = |a: &Matrix, b: &Matrix| assert!((a - b).amax() < 1e-10 * b.amax(), "{a}{b}");
     near(&all.h, &(model.transpose() * &model));
@@ -135,13 +146,13 @@ fn frames_are_the_normal_equations() {
     assert!((all.square / data.norm_squared() - 1.0).abs() < 1e-12);
     assert_eq!(all.count, data.len() as f64);
     // A frame lit as another spot would.
-    let sides = Side::all(&small.photographs(), &small.camera).unwrap();
-    let swapped = sides[0].lit(small.terms(), 2);
+    let sides = Sides::new(small.seen(), &small.camera).unwrap();
+    let swapped = sides.lit(&[(0, 2)], small.terms());
     let other = Small {
         laser: Matrix::from_fn(8, 3, |s, _| small.laser[(s, 2)]),
         ..Small::new()
     };
-    let due = &normals(&other.photographs(), other.terms()).unwrap()[0];
+    let due = &other.frames().each[0];
     near(&swapped.h, &due.h);
 }
 
@@ -149,11 +160,9 @@ fn frames_are_the_normal_equations() {
 #[test]
 fn the_likelihood_is_that_of_the_normal_distribution() {
     let small = Small::new();
-    let frames = normals(&small.photographs(), small.terms()).unwrap();
+    let all = small.frames().all();
     let root = covariance_root(&PLACES, 1.5).unwrap();
-    let found = Fit::new(&Normal::sum(frames.iter(), 4), &root)
-        .unwrap()
-        .unwrap();
+    let found = Fit::new(&all, &root).unwrap().unwrap();
     let (y, a) = small.dense();
     let distance = |i: usize, j: usize| {
         let d = DVector::from_column_slice(&PLACES[i]) - DVector::from_column_slice(&PLACES[j]);
@@ -175,7 +184,6 @@ fn the_likelihood_is_that_of_the_normal_distribution() {
     // The posterior mean and what it leaves, at that λ: (AᵀA + λK⁻¹)⁻¹ Aᵀy.
     let inverse = k.try_inverse().unwrap() * libm::exp(best);
     let rho = (a.transpose() * &a + inverse).try_inverse().unwrap() * (a.transpose() * &y);
-    let all = Normal::sum(frames.iter(), 4);
     let own = Spectrum::new(&all, &root)
         .unwrap()
         .unwrap()
@@ -226,6 +234,7 @@ fn plan(range: [f64; 2], orders: u64) -> LocatedPlan {
         elements: Some([4, 4]),
         occlusion: Occlusion::Considered,
         integration: Integration::Quadrature,
+        background: false,
         orders,
         seed: 1,
     }

@@ -2,9 +2,10 @@
 
 use nalgebra::DVector;
 
-use crate::lab::calibrate::{Calibrated, Calibration, LightLeftOut};
+use crate::lab::calibrate::{Calibrated, Calibration};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::lab::finding::listed;
+use crate::lab::light_left_out::LightLeftOut;
 use crate::num::digits::figure;
 use crate::num::statistics::sidak_threshold;
 use crate::recovery::Deviations;
@@ -13,8 +14,6 @@ use crate::recovery::Deviations;
 const FAR: f64 = 0.01;
 /// Even light that dark frames may leave, in percents of the mean light.
 const DARK_FRAMES: f64 = 1.0;
-/// More than this share of a misfit is most of it.
-const MOST: f64 = 0.5;
 
 impl Calibration {
     /// Whether single parameters, or all together, are farther off than they were known to, or
@@ -24,33 +23,19 @@ impl Calibration {
         self.is_beyond_together() || self.far().next().is_some() || light
     }
 
-    /// Of kinds that explain much the likeliest and what is hardly less so; where the photographs
-    /// refute all only what explains most of the misfit, for anything explains a little of one.
+    /// Where the photographs refute all only what explains most of the misfit.
     fn left_out_light(&self) -> impl Iterator<Item = &LightLeftOut> {
-        let each = self.light_left_out.iter();
-        let most = each.clone().map(|light| light.chi2).fold(0.0, f64::max);
         let misfit = if self.is_refuted() {
             (self.misfit - 1.0) * self.dof
         } else {
             0.0
         };
-        each.filter(move |light| light.p < FIT_LEVEL && light.chi2 > MOST * most.max(misfit))
+        LightLeftOut::likely(&self.light_left_out, misfit)
     }
 
     /// What is said of such light.
     pub(super) fn light_beyond(&self) -> impl Iterator<Item = String> {
-        self.left_out_light().map(|light| {
-            format!(
-                "Beware: {} would explain what is left over better than the geometry that was found does (χ² {} of {} \
-                 directions, P {}): the geometry takes it up, and may be OFF BY MANY OF ITS ERRORS. If there may be \
-                 such light, {}; else something is wrong that is not free.",
-                light.what,
-                figure(light.chi2, 3),
-                light.directions,
-                figure(light.p, 1),
-                light.cure
-            )
-        })
+        self.left_out_light().map(|light| light.beware("geometry"))
     }
 
     /// The parameter that even light moves most, over its error, where less does than dark frames may

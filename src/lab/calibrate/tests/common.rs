@@ -9,6 +9,7 @@ use crate::lab::calibrate::descent::Problem;
 use crate::lab::calibrate::tests::{
     is_slope_of_the_cost, of_two_spots, photographs, pictures, plan, problem, small, unexplained,
 };
+use crate::lab::common::{Common, FIELD, OTHER_LIGHT};
 use crate::lab::misplaced::normal;
 use crate::scene::Parameter;
 use crate::transport::Control;

@@ -9,15 +9,18 @@
 
 use nalgebra::DVector;
 
-use crate::lab::error::LabError;
-use crate::lab::unexplained::Unexplained;
+use super::error::LabError;
+use super::unexplained::Unexplained;
 use crate::matrix::Matrix;
 
-const OTHER_LIGHT: LabError = LabError::Unsuited(
+pub(super) const OTHER_LIGHT: LabError = LabError::Unsuited(
     "a background and other light in each frame are not taken out together; leave out --background, or --frame-polynomial",
 );
-const FIELD: LabError = LabError::Unsuited(
+pub(super) const FIELD: LabError = LabError::Unsuited(
     "a field of errors is not found beside a background; leave out --error-field, or --background",
+);
+const ALONE: LabError = LabError::Unsuited(
+    "a background takes all that single photographs say, and no pixel counts in two; give more photographs, or leave out --background",
 );
 
 /// The means over the frames.
@@ -25,6 +28,8 @@ const FIELD: LabError = LabError::Unsuited(
 pub(super) struct Common {
     /// w_pl/Σ_l w_pl, pixels × frames; 0 in pixels that do not count.
     shares: Matrix,
+    /// √Σ_l w_pl.
+    roots: DVector<f64>,
     /// Photographs less their means.
     pub(super) phi: Matrix,
 }
@@ -40,23 +45,32 @@ impl Common {
         }
         let frames: Vec<DVector<f64>> = (0..of.phi.ncols()).map(|l| of.roots(l)).collect();
         let mut shares = Matrix::from_columns(&frames).map(|q| q * q);
+        let roots = shares.column_sum().map(f64::sqrt);
         for mut pixel in shares.row_iter_mut() {
             let all = pixel.sum();
             if all > 0.0 {
                 pixel /= all;
             }
         }
+        if !shares.iter().any(|share| *share > 0.0 && *share < 1.0) {
+            return Err(ALONE);
+        }
         let counted = |x: f64, share: f64| if share > 0.0 { x } else { 0.0 };
         let phi = of.phi.zip_map(&shares, counted);
         let mean = phi.component_mul(&shares).column_sum();
         let phi = Matrix::from_fn(phi.nrows(), phi.ncols(), |p, l| phi[(p, l)] - mean[p]);
-        Ok(Self { shares, phi })
+        Ok(Self { shares, roots, phi })
     }
 
     /// Pixels that count: one direction each.
     pub(super) fn directions(&self) -> f64 {
         let counts = |pixel: &_| -> bool { nalgebra::Matrix::sum(pixel) > 0.0 };
         self.shares.row_iter().filter(counts).count() as f64
+    }
+
+    /// √Σ_l w_pl of each pixel.
+    pub(super) fn roots(&self) -> &DVector<f64> {
+        &self.roots
     }
 
     /// Weights of the frames in each pixel's mean, pixels × frames.
@@ -84,6 +98,3 @@ impl Common {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;
