@@ -199,9 +199,8 @@ impl Calibration {
         let rms = self.misfit.sqrt();
         match self.brightest.filter(|left| *left < -BRIGHTEST * rms) {
             Some(left) => format!(
-                "values that are clipped or not linear (saturation, gamma), for the brightest percent \
-                 of the entries lies below the model by {} times its noise on average, and all by {} \
-                 (rms)",
+                "values that are clipped or not linear, for the brightest percent of the entries lies \
+                 below the model by {} times its noise on average, and all by {} (rms)",
                 figure(-left, 2),
                 figure(rms, 2)
             ),

@@ -38,8 +38,8 @@ impl Calibration {
         self.left_out_light().map(|light| light.beware("geometry"))
     }
 
-    /// The parameter that even light moves most, over its error, where less does than dark frames may
-    /// leave.
+    /// The parameter that even light moves most, over its error, where less does than dark frames
+    /// may leave.
     pub(super) fn even_light(&self) -> Option<String> {
         let rise = self.even_light_chi2?;
         let over = |f: &'_ Calibrated| f.by_even_light.map_or(0.0, |moved| moved.abs() / f.stderr);
