@@ -34,22 +34,28 @@ pub enum Noise<'a> {
 }
 
 impl<'a> Noise<'a> {
-    /// Standard errors as well as the photographs tell them to these methods.
+    /// Standard errors as well as the photographs tell them to methods that weigh entries by them,
+    /// or to those that do not.
     fn refined(
         self,
         phi: &Matrix,
         nuisance: Nuisance<'_>,
-        methods: &[Method],
+        are_weights: bool,
     ) -> Option<Refined<'a>> {
         let Self::StandardError(stderr, known) = self else {
             return None;
         };
         let left_out = nuisance.left_out;
-        Some(if methods.iter().any(|method| method.is_joint()) {
+        Some(if are_weights {
             Refined::of_weights(phi, stderr, known, left_out)
         } else {
             Refined::of_replicates(stderr, known, left_out)
         })
+    }
+
+    /// The same by these errors.
+    fn by(self, refined: Option<&'a Refined<'_>>) -> Self {
+        refined.map_or(self, |own| Self::StandardError(&own.stderr, own.certainty))
     }
 
     fn known(self, model: &'a MatrixModel) -> Option<Known<'a>> {
@@ -76,8 +82,8 @@ pub struct Attempt {
 /// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and
 /// measures it against the true albedo at the element centres. `nuisance` is what else the
 /// photographs hold. Standard errors that follow from the noisy entries are taken by the light
-/// expected of these, and those from few replicates are pooled over pixels and spots where
-/// these say more. Methods that are not finished when `control` stops it are
+/// expected of these, and those from replicates are pooled over pixels and spots where these say
+/// more; methods that work pixel by pixel take those of many replicates as they are. Methods that are not finished when `control` stops it are
 /// [`RecoveryError::Stopped`].
 pub fn recover_objects(
     model: &MatrixModel,
@@ -92,7 +98,7 @@ pub fn recover_objects(
         model,
         (phi, noise),
         (nuisance, methods),
-        |problem, noise| attempts(model, &problem, noise, methods, options, control),
+        |problems, noise| attempts(model, &problems, noise, methods, options, control),
     )
 }
 
@@ -116,13 +122,13 @@ pub fn recover_with_picards(
         model,
         (phi, noise),
         (nuisance, methods),
-        |problem, noise| {
-            let attempts = attempts(model, &problem, noise, methods, options, control);
+        |problems, noise| {
+            let attempts = attempts(model, &problems, noise, methods, options, control);
             // What has not been decomposed by then takes as long as a method.
             let picards = if control.stopped() {
                 Ok(Vec::new())
             } else {
-                problem.and_then(|problem| picards(&problem, methods, options))
+                problems.and_then(|problems| picards(&problems, methods, options))
             };
             (attempts, picards)
         },
@@ -134,41 +140,40 @@ fn counts(model: &MatrixModel) -> Vec<[usize; 2]> {
     model.grids.iter().map(|grid| grid.count).collect()
 }
 
-/// Does `act` with all that is known of the photographs, as one problem, and of their noise.
+/// Does `act` with all that is known of the photographs, as the problem of methods that weigh
+/// entries and of those that do not, and of their noise.
 fn ready<T>(
     model: &MatrixModel,
     (phi, noise): (&Matrix, Noise<'_>),
     (nuisance, methods): (Nuisance<'_>, &[Method]),
-    act: impl FnOnce(Result<Problem<'_>, RecoveryError>, Noise<'_>) -> T,
+    act: impl FnOnce(Result<[Problem<'_>; 2], RecoveryError>, Noise<'_>) -> T,
 ) -> T {
-    let refined = noise.refined(phi, nuisance, methods);
-    let noise = match &refined {
-        Some(own) => Noise::StandardError(&own.stderr, own.certainty),
-        None => noise,
-    };
-    let (grids, shared) = (counts(model), Shared::default());
-    let stderr = noise.known(model).map(|known| known.stderr);
-    let problem = || {
+    let weigh = methods.iter().any(|method| method.is_joint());
+    let refined = [weigh, false].map(|weigh| noise.refined(phi, nuisance, weigh));
+    let (grids, shared) = (counts(model), [(); 2].map(|()| Shared::default()));
+    let problem = |k: usize| {
+        let stderr = refined[k].as_ref().map(|own| own.stderr.as_ref());
         let problem = problem(model, phi, stderr)?;
         let mut problem = problem.with_grids(&grids)?.with_nuisance(nuisance)?;
         if !model.places.is_empty() {
             problem = problem.with_places(&model.places)?;
         }
-        Ok(problem.sharing(&shared))
+        Ok::<_, RecoveryError>(problem.sharing(&shared[k]))
     };
-    act(problem(), noise)
+    let both = || Ok([problem(0)?, problem(1)?]);
+    act(both(), noise.by(refined[0].as_ref()))
 }
 
 fn attempts(
     model: &MatrixModel,
-    problem: &Result<Problem<'_>, RecoveryError>,
+    problems: &Result<[Problem<'_>; 2], RecoveryError>,
     noise: Noise<'_>,
     methods: &[Method],
     options: &Options,
     control: Control<'_>,
 ) -> Vec<Attempt> {
-    let problem = match problem {
-        Ok(problem) => problem,
+    let [problem, plain] = match problems {
+        Ok(problems) => problems,
         Err(e) => {
             let refused = |&method: &Method| Attempt {
                 method,
@@ -181,6 +186,7 @@ fn attempts(
         .iter()
         .map(|method| {
             share_of(control, Work::EACH_METHOD, |own| {
+                let problem = if method.is_joint() { problem } else { plain };
                 recover(*method, &problem.under(own), options)
             })
         })
@@ -218,11 +224,11 @@ fn attempts(
 }
 
 fn picards(
-    problem: &Problem<'_>,
+    [problem, plain]: &[Problem<'_>; 2],
     methods: &[Method],
     options: &Options,
 ) -> Result<Vec<Picard>, RecoveryError> {
-    let mut found = vec![recovery::picard(problem)?];
+    let mut found = vec![recovery::picard(plain)?];
     if methods.iter().any(|m| m.is_joint()) {
         match recovery::picard_joint(problem, options) {
             Err(RecoveryError::TooManyElements { .. }) => {}
