@@ -24,7 +24,7 @@ class Location(Finding):
 
     def __init__(self, found: dict[str, Any], is_found: bool) -> None:
         super().__init__(found)
-        #: Whether it was found.
+        #: Whether it was found, and the photographs do not refute it.
         self.is_found = is_found
 
     @property

@@ -92,7 +92,7 @@ use geometry::{Geometry, distance};
 use identified::identified;
 
 /// Below this probability of so bad a fit by noise alone more than noise is left.
-const LEVEL: f64 = 1e-3;
+const LEVEL: f64 = super::evidence::FIT_LEVEL;
 /// Typical sizes of angles (degrees), percents, lengths over the distance to the view, and gains.
 const TYPICAL: [f64; 4] = [1.0, 1.0, 0.01, 0.01];
 

@@ -14,6 +14,7 @@
 //! frames share: it can be taken out ([`Common`]), and else is looked for ([`light`]).
 
 mod describe;
+mod fitting;
 mod found;
 mod frames;
 mod light;
@@ -209,6 +210,7 @@ impl LocatedPlan {
         let nearby = peak.map_or(step, |peak| peak.stderr);
         let at = (best.size, nearby);
         let light_left_out = self.light_left_out((scene, altered), at, seen, &lengths)?;
+        let fit = self.fit(&there, seen, &lengths)?;
         let mut curve: Vec<&Place> = all().collect();
         curve.sort_by(|a, b| a.size.total_cmp(&b.size));
         let likelihood = |p: &&Place| Likelihood {
@@ -238,6 +240,7 @@ impl LocatedPlan {
             entries: photographs.counted(),
             frames: photographs.phi.ncols(),
             is_noise_known: photographs.stderr.is_some(),
+            fit,
             light_left_out,
             shared: photographs.certainty.errors.shared(),
         })

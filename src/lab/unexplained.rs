@@ -79,6 +79,19 @@ impl Unexplained<'_> {
         DVector::from_fn(self.phi.nrows(), |p, _| root(p))
     }
 
+    /// The same where this is the frame's light, W: of counts by its errors, not by those of the
+    /// noisy entries.
+    pub(super) fn roots_of(&self, l: usize, light: &DVector<f64>) -> DVector<f64> {
+        let roots = self.roots(l);
+        let Some(stderr) = self.stderr else {
+            return roots;
+        };
+        DVector::from_fn(roots.len(), |p, _| {
+            let own = self.certainty.stderr(light[p], stderr[(p, l)]);
+            if roots[p] > 0.0 { 1.0 / own } else { 0.0 }
+        })
+    }
+
     /// Refuses photographs of which nothing counts, or nothing but darkness.
     ///
     /// # Errors

@@ -72,6 +72,26 @@ fn shuffled_photographs_are_rejected() {
     assert!(told(&ended).contains(words), "{}", ended.account());
 }
 
+/// Photographs with a light of 5 % that the model lacks: the noise that is stated refutes what is
+/// found, as it does for `calibrate`, and the cure is named and works.
+#[test]
+fn light_left_over_is_not_found_to_fit() {
+    let w = rendered();
+    let phi = w.matrix("run/phi.npy");
+    npy::write(&w.path("run/phi.npy"), &phi.add_scalar(0.05 * phi.mean())).unwrap();
+    w.disown("run");
+    let line = "locate run --elements 4x4 --steps 5 --orders 0 --range -0.6,0.6";
+    let ended = w.phicam(line).exits(1);
+    for words in ["NOWHERE", "--background", "--frame-polynomial"] {
+        assert!(told(&ended).contains(words), "{}", ended.account());
+    }
+    let calibrate = "calibrate run --free hidden.normal --elements 4x4 --starts 1";
+    let _ = w.phicam(calibrate).exits(1);
+    for cure in ["--background", "--frame-polynomial 0"] {
+        let _ = w.phicam(&format!("{line} {cure}")).exits(0);
+    }
+}
+
 #[test]
 fn what_cannot_be_looked_for_is_refused() {
     let w = Workspace::with_scenes();

@@ -87,7 +87,7 @@ pub(in crate::cli) enum Command {
     /// Recover the hidden reflectance from Φcam: exit 0 done, 1 no reflectances explain it, 2 error
     Recover(Box<RecoverArgs>),
     /// Where the hidden surface is, its reflectances unknown, and whether the photographs belong to
-    /// their spots: exit 0 found, 1 not, 2 error
+    /// their spots: exit 0 found, 1 not, or the photographs refute what was found, 2 error
     Locate(LocateArgs),
     /// Estimate the geometry itself from the photographs, whatever the picture: where the hidden
     /// surface, spots, view, camera, occluders are, with errors: exit 0 found, 1 the photographs

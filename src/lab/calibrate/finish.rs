@@ -11,7 +11,6 @@ use super::{
 use crate::lab::certainty::{Errors, correlated, fits_better};
 use crate::lab::error::LabError;
 use crate::lab::located::Grid;
-use crate::lab::unexplained::Unexplained;
 use crate::lab::validation::Integration;
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_raw};
@@ -215,27 +214,19 @@ impl CalibrationPlan {
 impl Problem<'_> {
     /// χ² of what is found: of counts by the errors of the light that is found.
     fn chi2(&self, best: &State, light: &Light) -> f64 {
-        let Unexplained {
-            phi,
-            stderr,
-            certainty,
-            patterns,
-            ..
-        } = self.photographs;
-        let is_alone = patterns.is_none() && self.common.is_none() && self.cosines.is_none();
-        let Some(stderr) = stderr.filter(|_| certainty.counted.is_some() && is_alone) else {
+        let of = &self.photographs;
+        let is_alone = of.patterns.is_none() && self.common.is_none() && self.cosines.is_none();
+        if !is_alone || of.stderr.is_none() || of.certainty.counted.is_none() {
             return best.value.chi2;
-        };
-        let of = |l: usize| -> f64 {
+        }
+        let frame = |l: usize| -> f64 {
             let seen = light.frame(l) * &best.value.rho;
-            let counts = self.photographs.roots(l).map(|root| root > 0.0);
-            let each = (0..seen.len()).filter(|p| counts[*p]).map(|p| {
-                let own = certainty.stderr(seen[p], stderr[(p, l)]);
-                ((phi[(p, l)] - seen[p]) / own).powi(2)
-            });
-            each.sum()
+            let roots = of.roots_of(l, &seen);
+            (of.phi.column(l) - seen)
+                .component_mul(&roots)
+                .norm_squared()
         };
-        (0..phi.ncols()).map(of).sum()
+        (0..of.phi.ncols()).map(frame).sum()
     }
 
     /// The correlation of what is left of neighbouring pixels, where it is more than chance, of

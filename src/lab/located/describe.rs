@@ -1,112 +1,48 @@
 //! What is said of where a hidden surface is.
 
-use super::{Grid, Located, Order};
+mod ordered;
+
+use super::{Grid, Located};
 use crate::lab::certainty::hang_together;
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
     Shades, Table, Tone,
 };
+use crate::lab::fit::Fit;
 use crate::lab::light_left_out::LightLeftOut;
 use crate::num::digits::figure;
 
-/// Probability of an order by chance below which the stated one counts as found.
-pub(super) const SIGNIFICANCE: f64 = 1e-3;
-
-/// What is left over, in units of the stated noise, that is not noise alone.
-const MUCH: f64 = 1.1;
 /// A standard error that is less than this part of the others is rounding.
 const FLAT: f64 = 1e-9;
 
-impl Order {
-    /// Whether random orders explain the photographs too often; none where too few were tried to
-    /// tell.
-    pub fn is_by_chance(&self) -> Option<bool> {
-        if self.as_likely > 0 {
-            return Some(self.p > SIGNIFICANCE);
-        }
-        (self.p <= SIGNIFICANCE).then_some(false)
-    }
-
-    /// `is_explained`: whether nothing is left over beside the stated noise.
-    fn sentence(&self, is_explained: bool) -> String {
-        let Self {
-            tried,
-            as_likely,
-            p,
-            misfit,
-            least_misfit,
-        } = *self;
-        let told = match self.is_by_chance() {
-            Some(false) if is_explained => "The photographs belong to their spots",
-            Some(false) => {
-                "As a whole the photographs belong to their spots; whether each single one does is not told"
-            }
-            Some(true) => {
-                "Nothing says that the photographs belong to their spots: the order is wrong, or the \
-                 hidden surface is nowhere near, or the noise hides it"
-            }
-            None => {
-                "Too few orders were tried to say whether the photographs belong to their spots"
-            }
-        };
-        format!(
-            "{told}. Of {tried} random orders {as_likely} are as likely as the stated one (p = {}); \
-             misfit {} as stated, at least {} in the others. Frames up to 8 places too early or too \
-             late, all or from one on, two exchanged, or backwards, and photographs mirrored or turned \
-             were tried too.",
-            figure(p, 2),
-            figure(misfit, 3),
-            figure(least_misfit, 3)
-        )
-    }
-}
-
 impl Located {
-    /// Whether the largest likelihood lies within the range, and the order of the spots is neither
-    /// by chance nor mistaken.
+    /// Whether the largest likelihood lies within the range, the stated noise does not refute what
+    /// is there, and the order of the spots is neither by chance nor mistaken.
     pub fn is_found(&self) -> bool {
         let by_chance = self.order.and_then(|order| order.is_by_chance());
-        self.size.is_some() && by_chance != Some(true) && self.mistaken.is_none()
+        let is_in_order = by_chance != Some(true) && self.mistaken.is_none();
+        self.size.is_some() && self.refuted().is_none() && is_in_order
+    }
+
+    /// The fit, where the stated noise refutes it.
+    fn refuted(&self) -> Option<&Fit> {
+        self.fit.as_ref().filter(|fit| !fit.fits)
     }
 
     /// Whether the likeliest reflectances leave no more than the stated noise.
     fn is_explained(&self) -> bool {
-        self.is_noise_known && self.noise <= MUCH
+        let fit = self.fit.as_ref();
+        fit.is_some_and(|fit| fit.fits && !fit.is_open())
     }
 
     /// Light that would explain most of what is more than noise; all of it where none is stated.
     fn left_out_light(&self) -> impl Iterator<Item = &LightLeftOut> {
-        let entries = self.entries as f64;
-        let misfit = if self.is_explained() {
-            0.0
-        } else if self.is_noise_known {
-            (self.noise * self.noise - 1.0) * entries
-        } else {
-            entries
+        let misfit = match self.refuted() {
+            Some(fit) => (fit.chi2_per_dof - 1.0) * fit.dof,
+            None if self.is_noise_known => 0.0,
+            None => self.entries as f64,
         };
         LightLeftOut::likely(&self.light_left_out, misfit)
-    }
-
-    /// Whether the photographs belong to their spots.
-    fn ordered(&self) -> String {
-        match (&self.mistaken, self.order) {
-            (_, None) => "Whether the photographs belong to their spots was not asked.".to_owned(),
-            (None, Some(order)) => order.sentence(self.is_explained()),
-            (Some(other), Some(order)) if order.is_by_chance() == Some(true) => {
-                format!(
-                    "{} They fit better if {}.",
-                    order.sentence(false),
-                    other.what
-                )
-            }
-            (Some(other), Some(_)) => format!(
-                "The photographs are NOT IN ORDER: {}. Turned back they are likelier by e^{}, and \
-                 their misfit is {}. Import them in the right order.",
-                other.what,
-                figure(other.log_likelier, 2),
-                figure(other.misfit, 3)
-            ),
-        }
     }
 
     fn sentence(&self) -> String {
@@ -123,9 +59,16 @@ impl Located {
             None => format!("{unit} (its error is not known)"),
         };
         let [x, y, z] = self.middle.map(|x| figure(x, 3));
+        let refuted = self.refuted().map_or(String::new(), |fit| {
+            format!(
+                "The photographs fit it NOWHERE: χ²/dof {} (p = {}). Closest, ",
+                figure(fit.chi2_per_dof, 3),
+                figure(fit.p, 1)
+            )
+        });
         format!(
-            "{}: {} {error} from where the scene has it; the middle of the hidden surface is then at \
-             ({x}, {y}, {z}).",
+            "{refuted}{}: {} {error} from where the scene has it; the middle of the hidden surface \
+             is then at ({x}, {y}, {z}).",
             self.what,
             figure(size, 3),
         )
@@ -159,9 +102,17 @@ impl Located {
             let left = figure(self.noise, 3);
             noise = format!("What the likeliest reflectances leave is {left} of the stated noise.");
         }
-        if self.is_noise_known && !self.is_explained() {
-            noise += " That is more than noise: the elements may be too coarse (--elements), or the \
-                      model lacks something, and the place be wrong by more than its error.";
+        if let Some(fit) = self.fit.as_ref().filter(|fit| fit.is_open()) {
+            noise += &format!(
+                " That is more than noise (χ²/dof {}), but no more than the light may be integrated wrongly \
+                 by: whether the photographs fit is not told.",
+                figure(fit.chi2_per_dof, 3)
+            );
+        }
+        if self.refuted().is_some() {
+            noise += " That is MORE THAN NOISE: the model lacks something (a surface or an object, other \
+                      light), the elements are too coarse (--elements), or something else is wrong that is \
+                      not looked for; the place may be wrong by more than its error.";
         }
         let Some(picture) = &self.picture else {
             return format!("{noise} There is no picture of fewer than three frames.");

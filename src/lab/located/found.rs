@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::mistaken::Mistaken;
 use super::order::Order;
+use crate::lab::fit::Fit;
 use crate::lab::light_left_out::LightLeftOut;
 
 /// How likely one size is.
@@ -100,6 +101,8 @@ pub struct Located {
     pub entries: usize,
     /// Frames.
     pub frames: usize,
+    /// Whether noise alone explains what is left over; none where no noise is stated.
+    pub fit: Option<Fit>,
     /// Kinds of light that the model leaves out, by what is left over; none where errors of entries
     /// hang together, and beside a background.
     pub light_left_out: Vec<LightLeftOut>,

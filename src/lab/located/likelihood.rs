@@ -67,6 +67,11 @@ impl<'a> Spectrum<'a> {
         self.root * (&self.u * self.white(lambda))
     }
 
+    /// Degrees of freedom that the picture takes, Σ_i μ_i/(μ_i + λ).
+    pub(super) fn freedom(&self, lambda: f64) -> f64 {
+        self.mu.iter().map(|mu| mu / (mu + lambda)).sum()
+    }
+
     fn white(&self, lambda: f64) -> DVector<f64> {
         DVector::from_fn(self.g.len(), |i, _| self.g[i] / (self.mu[i] + lambda))
     }

@@ -1,6 +1,7 @@
 //! The likelihood against a dense normal distribution; places against scenes that were moved.
 
 mod background;
+mod refuted;
 mod told;
 
 use nalgebra::DVector;
