@@ -77,8 +77,8 @@ fn a_wall_in_two_parts_is_one_wall() {
 }
 
 /// The cells of a wall's texture are walls of their own, wherever spots and pixels lie across them;
-/// of a checkerboard so fine that nothing is cut along it, which lights as a wall of its mean albedo
-/// does, the bound says how far the rule is off.
+/// of a checkerboard so fine that nothing is cut along it, which lights as a wall of its mean
+/// albedo does, the bound says how far the rule is off.
 #[test]
 fn cells_of_a_texture_are_walls() {
     let one = "corner = [-30, -30, 0], u = [60, 0, 0], v = [0, 60, 0]";
