@@ -3029,7 +3029,7 @@ BREAKS = [
         "let is_more = left < libm::exp(noise);",
         "lib",
         "lab::refined::tests::light_of_few_paths_is_not_too_dark",
-        38,
+        39,
     ),
     Break(
         "The fourth moment over smooth errors is that of the noise",
@@ -3056,7 +3056,7 @@ BREAKS = [
         "is_motley |= seam.is_none();",
         "lib",
         "model::overhang::tests::cells_of_a_texture_are_walls",
-        38,
+        39,
     ),
     Break(
         "Jumps that nothing is cut along are in the bound",
@@ -3065,7 +3065,7 @@ BREAKS = [
         "0.0 * free.phi[(p, l)].abs() * (pixels[p] + spots[l])",
         "lib",
         "model::overhang::tests::cells_of_a_texture_are_walls",
-        38,
+        40,
     ),
     Break(
         "The tail of a Gaussian spot lights the view",
