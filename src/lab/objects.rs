@@ -83,7 +83,8 @@ pub struct Attempt {
 /// measures it against the true albedo at the element centres. `nuisance` is what else the
 /// photographs hold. Standard errors that follow from the noisy entries are taken by the light
 /// expected of these, and those from replicates are pooled over pixels and spots where these say
-/// more; methods that work pixel by pixel take those of many replicates as they are. Methods that are not finished when `control` stops it are
+/// more; methods that work pixel by pixel take those of many replicates as they are. Methods that
+/// are not finished when `control` stops it are
 /// [`RecoveryError::Stopped`].
 pub fn recover_objects(
     model: &MatrixModel,

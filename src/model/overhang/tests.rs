@@ -1,3 +1,4 @@
+use crate::model::cut::Cut;
 use crate::model::extent::{Extent, Take};
 use crate::model::{Kernel, converged};
 use crate::scene::Scene;
@@ -97,18 +98,26 @@ fn cells_of_a_texture_are_walls() {
             .replacen(view, "x = [-1.0, 0.7], y = [-0.4, 0.9]", 1)
             .replacen("lambertian = 0.11", &format!("lambertian = {albedo}"), 1);
         let scene = Scene::from_toml("seam", &text).unwrap();
-        converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED).unwrap()
+        let jumps = Cut::new(&scene, Extent::UNOBSTRUCTED).jumps(1).concat();
+        let found = converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED);
+        (found.unwrap(), jumps)
     };
     for profile in ["disc", "gaussian"] {
-        let walls = across(&scene(profile, &walls), "");
+        let (walls, _) = across(&scene(profile, &walls), "");
         let plain = scene(profile, &[(one, 0.11)]);
-        let cells = across(&plain, "{ cells = [[0.2, 0.8], [0.5, 0.3]] }");
+        let (cells, none) = across(&plain, "{ cells = [[0.2, 0.8], [0.5, 0.3]] }");
+        assert!(none.iter().all(|jump| *jump == 0.0), "{none:?}");
         assert!(cells.worst().unwrap().1 < 1e-6, "{:?}", cells.worst());
         for (a, b) in cells.phi.iter().zip(&walls.phi) {
             assert!((a - b).abs() < 1e-7 * b, "{profile}: {a:e} {b:e}");
         }
         let fine = "{ checkerboard = [3999, 3999], dark = 0.2, light = 0.6 }";
-        let [fine, mean] = [fine, "0.4"].map(|albedo| across(&plain, albedo));
+        let [(fine, jumps), (mean, _)] = [fine, "0.4"].map(|albedo| across(&plain, albedo));
+        // 2 (0.6 − 0.2)/0.4 over the root of 16 to 1000 nodes.
+        assert!(
+            jumps.iter().all(|jump| (0.06..0.5).contains(jump)),
+            "{jumps:?}"
+        );
         for k in 0..fine.phi.len() {
             let off = (fine.phi[k] - mean.phi[k]).abs();
             assert!(off > mean.bound[k] && off < fine.bound[k], "{profile} {k}");
