@@ -149,8 +149,8 @@ mod tests {
 
     /// Noise of counts is found to a third of what each of 32 replicates is off by, 1/√62 of
     /// itself; squares over it have the moments 1 and 3 of a normal law, to 5 of their errors.
-    /// Errors that scatter e-fold are none of the light, and those that are known, of few replicates
-    /// or shared, are left.
+    /// Errors that scatter e-fold are none of the light, and those that are known, of few
+    /// replicates or shared, are left.
     #[test]
     fn noise_of_the_light_is_told_by_all_entries() {
         let light = Matrix::from_fn(60, 40, |p, l| {

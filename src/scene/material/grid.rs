@@ -16,8 +16,8 @@ use crate::scene::error::{Fault, keys};
 /// once; θ_i and θ_o take the same values.
 ///
 /// f_r is multilinear between the lines and constant beyond the outermost angles, so that a table
-/// of one line is Lambertian; one whose polar angles end as if in radians is refused. φ is folded to
-/// [0, 180]. Values for (θ_i, θ_o) and (θ_o, θ_i) that differ by no more than a twentieth of the
+/// of one line is Lambertian; one whose polar angles end as if in radians is refused. φ is folded
+/// to [0, 180]. Values for (θ_i, θ_o) and (θ_o, θ_i) that differ by no more than a twentieth of the
 /// larger are averaged, so the BRDF is exactly reciprocal; others are refused.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
