@@ -146,16 +146,13 @@ impl<'a> Cut<'a> {
         let surfaces = scene.surfaces.iter();
         let unseamed: Vec<bool> = surfaces.map(|s| s.seams().is_none()).collect();
         let unseamed = |w: &WallPoint| w.surface.is_some_and(|id| unseamed[id as usize]);
-        let seen = |(p, parts): (usize, &Vec<FootprintPart>)| {
+        let seen_of = |(nodes, parts): (Vec<WallPoint>, &Vec<FootprintPart>)| {
             let is_motley = parts.iter().any(|part| part.is_motley);
-            let nodes = parts.iter().flat_map(|part| part.nodes(level));
-            let nodes: Vec<WallPoint> = nodes
-                .map(|(ab, w)| wall_point::seen(scene, p, ab, w))
-                .collect();
             let own = is_motley || nodes.iter().any(unseamed);
             if own { spread(&nodes) } else { 0.0 }
         };
-        let seen = self.footprints.iter().enumerate().map(seen).collect();
+        let seen = self.seen(level).into_iter().zip(&self.footprints);
+        let seen = seen.map(seen_of).collect();
         let lit = self.lit(level).into_iter().enumerate();
         let lit = lit.map(|(l, nodes)| {
             if overhang::is_motley(scene, l, self.profile) {

@@ -10,7 +10,7 @@ use super::place::{CORNERS, halved};
 use super::spot::{self, density, profile_nodes, reach};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{Basis, DVec3, Shape};
-use crate::scene::{Profile, Scene};
+use crate::scene::{Profile, Scene, Spot};
 use figure::{CORNER, along_side, chords, inside, nodes_within};
 
 /// Half the side of a square about a spot over its reach.
@@ -138,8 +138,7 @@ fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64;
         return None;
     }
     let own = scene.laser.spots.get(spot)?;
-    let (laser, basis) = (scene.laser.position, Basis::around(own.target.normal));
-    let aim = |[x, y]: [f64; 2]| own.target.position + basis.to_world([x, y, 0.0]) - laser;
+    let (aim, basis) = (aims(scene, own), Basis::around(own.target.normal));
     let mut figures = vec![
         CORNERS
             .map(|at| at.map(|x| BEYOND * reach * (2.0 * x - 1.0)))
@@ -154,11 +153,10 @@ fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64;
         .filter_map(|(id, wall)| Some((id, wall.seams()?)));
     let seams = seams.flat_map(|(id, seams)| seams.into_iter().map(move |ends| (ends, Some(id))));
     let mut is_motley = false;
-    for ([a, b], seam) in sides.flatten().map(|ends| (ends, None)).chain(seams) {
-        let edge = (a - laser).cross(b - laser);
-        let height = |at: [f64; 2]| edge.dot(aim(at));
-        if crosses(height, reach) {
-            let halves = figures.iter().flat_map(|f| halved(f, height));
+    for (line, seam) in sides.flatten().map(|ends| (ends, None)).chain(seams) {
+        let height = height(scene, line, &aim);
+        if crosses(&height, reach) {
+            let halves = figures.iter().flat_map(|f| halved(f, &height));
             figures = halves.filter(|f| f.len() > 2).collect();
             is_motley |= seam == Some(own.surface as usize);
         }
@@ -179,6 +177,24 @@ fn figures(scene: &Scene, spot: usize, profile: Profile) -> Option<Vec<Vec<[f64;
     (is_other || is_motley).then(|| lit.into_iter().map(|(_, figure)| figure).collect())
 }
 
+/// The places of a spot's plane, from the laser.
+fn aims(scene: &Scene, spot: &Spot) -> impl Fn([f64; 2]) -> DVec3 {
+    let (target, laser) = (spot.target.position, scene.laser.position);
+    let basis = Basis::around(spot.target.normal);
+    move |[x, y]| target + basis.to_world([x, y, 0.0]) - laser
+}
+
+/// Their height over the plane through the laser and a line.
+fn height(
+    scene: &Scene,
+    [a, b]: [DVec3; 2],
+    aim: &impl Fn([f64; 2]) -> DVec3,
+) -> impl Fn([f64; 2]) -> f64 {
+    let laser = scene.laser.position;
+    let edge = (a - laser).cross(b - laser);
+    move |at| edge.dot(aim(at))
+}
+
 /// Whether a line at which this height is 0 crosses a spot: one that touches it leaves nothing
 /// beyond.
 fn crosses(height: impl Fn([f64; 2]) -> f64, reach: f64) -> bool {
@@ -195,12 +211,8 @@ pub(super) fn is_motley(scene: &Scene, spot: usize, profile: Profile) -> bool {
         return false;
     }
     let own = &scene.laser.spots[spot];
-    let (laser, basis) = (scene.laser.position, Basis::around(own.target.normal));
-    let aim = |[x, y]: [f64; 2]| own.target.position + basis.to_world([x, y, 0.0]) - laser;
-    let crossed = |[a, b]: [DVec3; 2]| {
-        let edge = (a - laser).cross(b - laser);
-        crosses(|at| edge.dot(aim(at)), reach)
-    };
+    let aim = aims(scene, own);
+    let crossed = |seam| crosses(height(scene, seam, &aim), reach);
     let seams = scene.surfaces[own.surface as usize].seams();
     seams.is_none_or(|seams| seams.into_iter().any(crossed))
 }
