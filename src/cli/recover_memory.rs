@@ -217,6 +217,7 @@ impl Strips<'_> {
             best: None,
             none_possible: None,
             determined: None,
+            unseen: Vec::new(),
             certainty: Some(self.certainty),
             moved: None,
             against: None,

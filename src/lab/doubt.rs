@@ -13,7 +13,7 @@ use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
     DETERMINED, HALF, alike_untold, between_neighbours, by_entries, few_replicates, integrated,
-    overstated, shared, undetermined, uneven, unseen,
+    overstated, shared, too_bright, undetermined, uneven, unseen,
 };
 use misfit::{misfit, none_possible, outlier};
 
@@ -49,6 +49,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         undetermined(found, judged),
         unit_untold(found),
         unseen(found, judged),
+        too_bright(found, judged),
         uneven(found),
         alike_untold(found, judged),
         few_directions(found),

@@ -34,7 +34,9 @@ use nalgebra::DVector;
 use super::certainty::Certainty;
 use crate::matrix::Matrix;
 use crate::model::Factors;
-use crate::recovery::{Determined, Method, Options, Problem, Recovered, RecoveryError, determined};
+use crate::recovery::{
+    Determined, Method, Options, Problem, Recovered, RecoveryError, determined, unseen,
+};
 pub use attainable::Attainable;
 use attainable::LeftOver;
 pub(super) use attainable::ROUGH;
@@ -160,6 +162,8 @@ pub struct Judged {
     pub none_possible: Option<RecoveryError>,
     /// What the photographs determine of each element, where it is known.
     pub determined: Option<Determined>,
+    /// Elements of which they say nothing, in order; none where that is not known.
+    pub unseen: Vec<usize>,
     /// What is known of the errors of the photographs; none where they are not.
     pub certainty: Option<Certainty>,
     /// How far the integrals of the model may move each element; none where that is not known.
@@ -200,6 +204,10 @@ impl Judged {
             best,
             none_possible,
             determined: few.then(|| determined(problem).ok()).flatten(),
+            unseen: few
+                .then(|| unseen(problem).ok())
+                .flatten()
+                .unwrap_or_default(),
             certainty: noise.map(|known| known.certainty),
             moved: None,
             against: None,

@@ -118,6 +118,7 @@ pub use field::ErrorField;
 pub use gains::{Deviations, Gains};
 pub use joint::{
     CramerRao, Determined, Exponential, cramer_rao, determined, picard_joint, two_valued_bytes,
+    unseen,
 };
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};

@@ -98,9 +98,38 @@ pub(super) fn overstated(judged: &Judged) -> Option<String> {
 /// A share of an element's variance below which the photographs say nothing of it.
 const UNSEEN: f64 = 1e-3;
 
-/// Elements of `nnls` that reflect more than all where the photographs say nothing of them: no
-/// bound and no error tells that of noise.
+/// So many elements are listed one by one.
+const LISTED: usize = 8;
+
+/// Elements of which the photographs say nothing, where no error of theirs tells it, and what a
+/// method shows there.
 pub(super) fn unseen(found: &Recovered, judged: &Judged) -> Option<String> {
+    let (count, all) = (judged.unseen.len(), found.reflectance.len());
+    if count == 0 || undetermined(found, judged).is_some() {
+        return None;
+    }
+    let shown = match found.method {
+        Method::JointGp => "values and errors are what its prior expects beside their neighbours",
+        Method::JointTv => "values are those of the least total variation beside their neighbours",
+        Method::JointTwoValued => "which of its levels they have is a guess",
+        Method::Joint | Method::Nnls => "values are a bound's, or noise",
+        _ => "values are 0, or noise",
+    };
+    let each = judged.unseen.iter().take(LISTED).map(usize::to_string);
+    let more = match count.saturating_sub(LISTED) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    Some(format!(
+        "the photographs say NOTHING of {count} of {all} elements, whose light they do not show ({}{more}; counted \
+         from 0 along u, then along v): {shown}. Pass over them, or photograph by other spots or another view",
+        each.collect::<Vec<String>>().join(", ")
+    ))
+}
+
+/// Elements of `nnls` that reflect more than all where the photographs hardly tell them from
+/// others: no bound and no error tells that of noise.
+pub(super) fn too_bright(found: &Recovered, judged: &Judged) -> Option<String> {
     let known = judged.determined.as_ref();
     let known = known.filter(|_| found.method == Method::Nnls)?;
     let each = known.shares.iter().zip(&found.reflectance);

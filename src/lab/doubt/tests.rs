@@ -192,3 +192,57 @@ fn a_search_that_finds_no_possible_picture_is_told() {
         assert_eq!(warned.count() > 0, told, "{sign}: {:?}", object.warnings);
     }
 }
+
+/// An element that no light reaches: every method says so of its picture, by its number, with a
+/// known and a free scale, with known and unknown noise; where all are lit none does.
+#[test]
+fn an_element_without_light_is_told_by_every_method() {
+    let side = |rows: usize, columns: usize, dark: usize| {
+        Matrix::from_fn(rows, columns, |p, j| {
+            let x = 1.5 + libm::sin((p * (j + 2)) as f64 + 0.3 * j as f64);
+            if j == dark { 0.0 } else { x }
+        })
+    };
+    for (dark, free_scale) in [(6, false), (6, true), (99, false), (99, true)] {
+        let laser = side(12, 9, 99).transpose();
+        let model = MatrixModel::of_sides(side(20, 9, dark), laser, [3, 3]).unwrap();
+        let board = Matrix::from_fn(9, 1, |j, _| if j % 2 == 0 { 0.8 } else { 0.2 });
+        let exact =
+            &model.camera_side * Matrix::from_diagonal(&board.column(0)) * &model.laser_side;
+        let taken = Photographs::relative(&exact, 1e-3, 3);
+        let nuisance = Nuisance {
+            free_scale,
+            ..Nuisance::default()
+        };
+        let known = Noise::StandardError(&taken.stderr, Certainty::STATED);
+        for noise in [known, Noise::Unknown] {
+            let methods: Vec<Method> = Method::ALL.into_iter().filter(|m| m.is_joint()).collect();
+            let options = Options {
+                total_variation: Some(1e-6),
+                ..Options::default()
+            };
+            let control = Control::none();
+            let found = recover_objects(
+                &model, &taken.phi, noise, nuisance, &methods, &options, control,
+            );
+            for attempt in found {
+                let case = format!("{} {dark} {free_scale} {noise:?}", attempt.method);
+                let Ok(objects) = attempt.outcome else {
+                    // A Gaussian process needs more light than this to know its noise.
+                    assert!(matches!(noise, Noise::Unknown), "{case}");
+                    continue;
+                };
+                let told = objects[0].warnings.iter().filter(|w| {
+                    w.contains("say NOTHING of 1 of 9 elements, whose light they do not show (6;")
+                        || w.contains("do not determine 1 of 9 elements")
+                });
+                assert_eq!(
+                    told.count(),
+                    usize::from(dark == 6),
+                    "{case}: {:?}",
+                    objects[0].warnings
+                );
+            }
+        }
+    }
+}

@@ -23,6 +23,17 @@ pub struct Svd {
 }
 
 impl Svd {
+    /// ‖A_j‖ of each column of A, √(Σ_i σ_i² V_ij²).
+    pub fn column_norms(&self) -> DVector<f64> {
+        let mut squares = DVector::zeros(self.vt.ncols());
+        for (sigma, v) in self.sigma.iter().zip(self.vt.row_iter()) {
+            for (sum, v) in squares.iter_mut().zip(v.iter()) {
+                *sum += (sigma * v) * (sigma * v);
+            }
+        }
+        squares.map(f64::sqrt)
+    }
+
     /// The numerical rank of A at a tolerance, and the singular value at or below which counts as
     /// zero.
     ///

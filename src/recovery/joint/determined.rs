@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use super::khatri_rao::operator;
 use super::linear::about_grey;
 use super::scale;
+use crate::num::linalg::{Tolerance, cut};
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.
@@ -13,6 +14,9 @@ const BEFORE: f64 = 0.5;
 /// A misfit of weights by pixel and spot to those of the noise, in ln σ, above which they are not
 /// taken for the noise itself.
 const SEPARABLE: f64 = 1e-3;
+
+/// A share of an element's variance below which the photographs say nothing of it.
+const UNSEEN: f64 = 1e-3;
 
 /// How much of each element the photographs determine.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +77,32 @@ pub fn determined(problem: &Problem<'_>) -> Result<Determined, RecoveryError> {
         rank: shares.sum(),
         shares,
     })
+}
+
+/// The elements, in order, of which the photographs say nothing, even if all others were known: the
+/// signal a_j = τ ‖√W A_j‖ of element j alone, of 0.5 ± τ beforehand, would lower its variance by
+///
+/// > a_j²/(1 + a_j²) < 1e-3;
+///
+/// where the noise is not known, its light is a rounding of the brightest direction's. What a
+/// method shows there is what it assumes.
+///
+/// # Errors
+/// Those of [`determined`](determined()) but for a missing noise model.
+pub fn unseen(problem: &Problem<'_>) -> Result<Vec<usize>, RecoveryError> {
+    let operator = operator(problem, &Options::default())?;
+    let directions = operator.directions()?;
+    let (found, _) = &*directions;
+    let sizes = found.column_norms();
+    let rounding = operator.tolerance(Tolerance::Auto);
+    let (rows, sigma) = (operator.rows(), found.sigma.as_slice());
+    let (_, cutoff) = cut(sigma, rows, sizes.len(), rounding)?;
+    let least = match operator.weighting {
+        Weighting::Unweighted => 0.0,
+        _ => (UNSEEN / (1.0 - UNSEEN)).sqrt() / (BEFORE * scale::unit(problem)?),
+    };
+    let is_dark = |j: &usize| sizes[*j] <= cutoff.max(least);
+    Ok((0..sizes.len()).filter(is_dark).collect())
 }
 
 #[cfg(test)]
@@ -146,5 +176,29 @@ mod tests {
                 .rank
                 < found.rank
         );
+    }
+
+    /// Light of one element in n entries of signal a and noise σ says nothing of it where its share
+    /// by hand, n a²τ²/σ²/(1 + n a²τ²/σ²), is below 1e-3; one of two that no entry tells apart is
+    /// seen, though half of it is determined. Without noise only what has no light is not.
+    #[test]
+    fn unseen_elements_by_hand() {
+        let (phi, d) = (
+            DMatrix::from_element(2, 3, 1.0),
+            DMatrix::from_element(4, 3, 1.0),
+        );
+        let (sigma, n) = (0.5, 6.0);
+        let at_share = |share: f64| sigma * 2.0 * (share / (1.0 - share) / n).sqrt();
+        let c = |own: f64| DMatrix::from_fn(2, 4, |_, j| [0.3, own, 0.0, 0.3][j]);
+        let stderr = DMatrix::from_element(2, 3, sigma);
+        for (share, known, dark) in [
+            (0.99e-3, Some(&stderr), vec![1, 2]),
+            (1.01e-3, Some(&stderr), vec![2]),
+            (0.99e-3, None, vec![2]),
+        ] {
+            let c = c(at_share(share));
+            let problem = Problem::new(&phi, &c, &d, known).unwrap();
+            assert_eq!(unseen(&problem), Ok(dark), "{share}");
+        }
     }
 }

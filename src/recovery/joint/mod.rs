@@ -40,7 +40,7 @@ pub(super) mod unknown_noise;
 mod weights;
 
 pub use cramer_rao::{CramerRao, cramer_rao};
-pub use determined::{Determined, determined};
+pub use determined::{Determined, determined, unseen};
 pub use exponential::Exponential;
 pub use picard::picard_joint;
 pub use two_valued::two_valued_bytes;
