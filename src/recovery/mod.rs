@@ -154,6 +154,7 @@ pub fn recover(
     if let Some(confidence) = options.bands {
         bands::allowed(method, confidence)?;
     }
+    joint::refuse_no_light(problem, options)?;
     let mut found = if problem.nuisance.has_gains() {
         joint::gauss_newton::recover(method, problem, options, by)
     } else {

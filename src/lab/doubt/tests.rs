@@ -13,7 +13,7 @@ use crate::lab::{Certainty, Noise, RecoveredObject, Work, recover_objects};
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
 use crate::num::control::Control;
-use crate::recovery::{Nuisance, Options};
+use crate::recovery::{Nuisance, Options, Problem, RecoveryError, recover};
 
 /// Every method that 16 elements and 14 spots allow, with what it makes of the photographs: a
 /// refusal, or its first surface.
@@ -167,10 +167,30 @@ fn a_free_scales_uncertain_unit_is_told() {
     }
 }
 
-/// Dark less light, of a free scale: numbers explain it, no reflectances above 0 do, and where
-/// these were looked for and not found that is told beside a picture that fits.
+/// Where reflectances between 0 and 1 were looked for and not found, that is told beside a picture
+/// that fits.
 #[test]
 fn a_search_that_finds_no_possible_picture_is_told() {
+    let side = |rows, columns| Matrix::from_fn(rows, columns, |i, j| 1.0 + ((i * j) % 3) as f64);
+    let (c, d) = (side(4, 2), side(2, 3));
+    let phi = &c * &d;
+    let problem = Problem::new(&phi, &c, &d, None).unwrap();
+    let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
+    for (none_possible, told) in [(None, false), (Some(RecoveryError::TakenUp), true)] {
+        let judged = Judged {
+            none_possible,
+            ..Judged::default()
+        };
+        let warned = doubts(&found, &judged);
+        let is_told = warned.iter().any(|w| w.contains("NOT KNOWN"));
+        assert_eq!(is_told, told, "{warned:?}");
+    }
+}
+
+/// Dark less light, of a free scale: numbers explain it and no reflectances above 0 do, so that
+/// every method that takes a free scale refuses it in the same words.
+#[test]
+fn photographs_of_no_possible_picture_are_refused() {
     let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
     let taken = Photographs::relative(&model.phi(), 1e-3, 3);
     let nuisance = Nuisance {
@@ -178,18 +198,24 @@ fn a_search_that_finds_no_possible_picture_is_told() {
         ..Nuisance::default()
     };
     let (options, control) = (Options::default(), Control::none());
-    for (sign, told) in [(1.0, false), (-1.0, true)] {
+    let methods: Vec<Method> = Method::ALL.into_iter().filter(|m| m.is_joint()).collect();
+    for (sign, refused) in [(1.0, false), (-1.0, true)] {
         // One number is above 0, for the scale to be that.
         let mut phi = &taken.phi * sign;
         let own = model.camera_side.column(0) * model.laser_side.row(0) * 0.2;
         phi += own;
         let noise = Noise::StandardError(&taken.stderr, Certainty::STATED);
-        let methods = [Method::JointUnbounded];
         let found = recover_objects(&model, &phi, noise, nuisance, &methods, &options, control);
-        let object = &found[0].outcome.as_ref().unwrap()[0];
-        let warned = object.warnings.iter();
-        let warned = warned.filter(|w| w.contains("NOT KNOWN") || w.contains("DOES NOT FIT"));
-        assert_eq!(warned.count() > 0, told, "{sign}: {:?}", object.warnings);
+        assert_eq!(found.len(), 6);
+        for attempt in found {
+            match attempt.outcome {
+                Ok(found) => assert!(!refused && !found[0].contradicted(), "{}", attempt.method),
+                Err(error) => {
+                    let told = error.to_string().contains("no element comes out bright");
+                    assert!(refused && told, "{} {error}", attempt.method);
+                }
+            }
+        }
     }
 }
 

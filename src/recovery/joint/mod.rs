@@ -43,4 +43,5 @@ pub use cramer_rao::{CramerRao, cramer_rao};
 pub use determined::{Determined, determined, unseen};
 pub use exponential::Exponential;
 pub use picard::picard_joint;
+pub(super) use scale::refuse_no_light;
 pub use two_valued::two_valued_bytes;

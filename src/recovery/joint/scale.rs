@@ -32,6 +32,40 @@ pub(super) fn unit(problem: &Problem<'_>) -> Result<f64, RecoveryError> {
     size.ok_or(RecoveryError::NO_DIRECTION)
 }
 
+/// Refuses photographs that hold no light of the surface, where the scale is free. With the light
+/// r_j of each element and the photographs d, weighted, other light eliminated from both, the
+/// least squares over ρ ≥ 0 are those of no light at all where
+///
+/// > r_jᵀ d ≤ 0   for every element j
+///
+/// (Karush, Kuhn and Tucker): whatever its reflectance, an element only adds to what is left over.
+///
+/// # Errors
+/// [`RecoveryError::NoScale`]; those of the operator.
+pub(in crate::recovery) fn refuse_no_light(
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<(), RecoveryError> {
+    if !problem.nuisance.free_scale {
+        return Ok(());
+    }
+    let operator = operator(problem, options)?;
+    let directions = operator.directions()?;
+    let (found, seen) = &*directions;
+    let seen = seen.rows(0, found.sigma.len());
+    let along = found.vt.tr_mul(&seen.component_mul(&found.sigma));
+    let sizes = found.column_norms();
+    // What rounding leaves of r_jᵀ d; an element below the rounding of the brightest has no sign.
+    let rounding = f64::EPSILON * along.len() as f64;
+    let least = rounding * sizes.max();
+    let mut each = along.iter().zip(&sizes).filter(|(_, size)| **size > least);
+    if each.any(|(along, size)| *along > rounding * size * seen.norm()) {
+        Ok(())
+    } else {
+        Err(RecoveryError::NoScale { largest: 0.0 })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::DMatrix;
@@ -74,6 +108,60 @@ mod tests {
         // Darker than nothing: by norms.
         assert!((size(&-&grey, true, false).unwrap() / 3.7 - 1.0).abs() < 1e-9);
         assert!(size(&(&grey * 0.0), true, false).is_err());
+    }
+
+    /// Photographs from Φ to −Φ, and one element that no light reaches: every method refuses those
+    /// in which no element's light, summed over all entries by hand, has the sign of light, and no
+    /// others.
+    #[test]
+    fn photographs_without_light_are_refused_by_every_method() {
+        let bench = Bench::new(6.0, 4, 8);
+        let mut c = bench.c.clone();
+        c.column_mut(5).fill(0.0);
+        let d = DMatrix::from_fn(16, 24, |j, l| bench.d[(j, 5 * l)]);
+        let picture = |rho: &dyn Fn(usize) -> f64| {
+            let rho = DVector::from_fn(16, |j, _| rho(j));
+            &c * DMatrix::from_diagonal(&rho) * &d
+        };
+        let (light, one) = (
+            picture(&|j| 0.2 + 0.04 * j as f64),
+            picture(&|j| f64::from(u8::from(j == 10))),
+        );
+        let stderr = light.map(|x| 1e-2 * x);
+        let mut refused = Vec::new();
+        for part in [-0.5, -0.05, 0.0, 0.05, 0.5, 2.0, 8.0] {
+            let phi = &one * part - &light;
+            let along = |j: usize| -> f64 {
+                let entry = |(p, l): (usize, usize)| {
+                    c[(p, j)] * d[(j, l)] * phi[(p, l)] / stderr[(p, l)].powi(2)
+                };
+                (0..64 * 24).map(|i| entry((i % 64, i / 64))).sum()
+            };
+            let dark = (0..16).all(|j| along(j) <= 0.0);
+            refused.push(dark);
+            let problem = Problem::new(&phi, &c, &d, Some(&stderr))
+                .and_then(|p| p.with_grids(&[[4, 4]]))
+                .and_then(|p| {
+                    p.with_nuisance(Nuisance {
+                        free_scale: true,
+                        ..Nuisance::default()
+                    })
+                })
+                .unwrap();
+            for method in JOINT {
+                // A weight of the total variation that suits noise alone is not looked for.
+                let options = Options {
+                    total_variation: Some(1e-9),
+                    weighting: crate::recovery::WeightRule::Entries,
+                    ..Options::default()
+                };
+                let found = recover(method, &problem, &options);
+                let none = Err(RecoveryError::NoScale { largest: 0.0 });
+                assert_eq!(dark, found.map(|_| ()) == none, "{method} {part}");
+            }
+        }
+        assert_eq!(refused[..4], [true; 4], "{refused:?}");
+        assert_eq!(refused[6..], [false], "{refused:?}");
     }
 
     /// Largest difference of entries over the largest entry.
