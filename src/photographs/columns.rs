@@ -98,7 +98,7 @@ impl Columns {
             let corrected = correction.apply(&name, &mean)?;
             found.photographs += mean.frames;
             found.zeros += mean.cut_off();
-            found.highest = found.highest.with(mean.highest);
+            found.highest.add(&mean.highest);
             found.common += corrected.common;
             found.of_flat += corrected.of_flat;
             seen += 1;

@@ -162,7 +162,7 @@ pub fn import(
     warnings.extend(by_own_light(columns.by_own_light));
     warnings.extend(colourless(&shots.grey));
     let table = shots.response.as_ref();
-    warnings.extend(table.and_then(|table| table.beyond(columns.highest.value)));
+    warnings.extend(table.and_then(|table| table.beyond(columns.highest.value())));
     warnings.extend(
         columns
             .highest

@@ -32,7 +32,7 @@ pub struct Plane {
     pub share: f64,
     /// Stored values that are 0, in any of the channels: cut off below.
     pub zeros: usize,
-    /// The largest stored integer below saturation.
+    /// The largest stored integers below saturation.
     pub highest: Highest,
 }
 
@@ -101,8 +101,7 @@ pub fn linearised(
             plane.saturated[k] |= *s >= saturation;
             plane.zeros += usize::from(*s == 0.0 && step > 0.0);
             if step > 0.0 && *s < saturation {
-                let (value, times) = (*s, 1);
-                plane.highest = plane.highest.with(Highest { value, times });
+                plane.highest.count(*s);
             }
         }
     }
@@ -126,7 +125,7 @@ pub struct Averaged {
     pub share: f64,
     /// Stored values that were 0.
     pub zeros: usize,
-    /// The largest stored integer below saturation.
+    /// The largest stored integers below saturation.
     pub highest: Highest,
     squares: Vec<f64>,
     /// Pixels that make up a whole: those that the first photograph has not saturated.
@@ -162,7 +161,7 @@ impl Averaged {
         same_size(name, next.size, self.size)?;
         self.frames += 1;
         self.zeros += next.zeros;
-        self.highest = self.highest.with(next.highest);
+        self.highest.add(&next.highest);
         let n = self.frames as f64;
         let light = whole(&next.light, &self.in_whole);
         let off = light - self.whole[0];
