@@ -92,6 +92,10 @@ const THREE_BOUNCES: u32 = 3;
 const WAVELENGTHS: [f64; 2] = [1.6e-8, 1.1e-4];
 const POWERS: [f64; 2] = [1e-6, 1.0];
 
+/// A share of a measured table that is missing, from which on it is told: entries that the horizon
+/// cuts are fewer.
+const NOTABLE: f64 = 0.01;
+
 /// 1/e² radii of a Gaussian spot beyond which lies e^−24.5 of its power: light by way of a hidden
 /// surface is more than that.
 const TAIL: f64 = 3.5;
@@ -110,6 +114,10 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
         {
             let angle = libm::acos(p.skew()).to_degrees();
             found.push(Warning::Skewed(surface.name.clone(), angle));
+        }
+        let unmeasured = surface.material.unmeasured();
+        if unmeasured > NOTABLE {
+            found.push(Warning::NotMeasured(surface.name.clone(), unmeasured));
         }
         if surface.role == Role::Hidden && !surface.is_aligned() {
             found.push(Warning::ElementsAcrossCells(surface.name.clone()));

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::mesh::Defects;
+use crate::num::digits::significant;
 
 /// Something suspicious in a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,8 @@ pub enum Warning {
     Mesh(String, Defects),
     /// Colours that come with a surface's mesh and are not used: (surface, what they are).
     MeshPaint(String, String),
+    /// Entries of a surface's measured table that were not measured: (surface, their share).
+    NotMeasured(String, f64),
     /// Spots at the place of an earlier one.
     SpotsTogether(Vec<usize>),
     /// Part of a hidden surface lies behind a wall: (surface, wall).
@@ -77,6 +80,13 @@ impl fmt::Display for Warning {
             Self::MeshPaint(surface, what) => write!(
                 f,
                 "the mesh of `{surface}` comes with {what}, which are not used: its albedo is what `material` says, such as `{{ lambertian = 0.5 }}` or, by its texture coordinates, `{{ lambertian = {{ image = \"picture.png\", transfer = \"srgb\" }} }}`"
+            ),
+            Self::NotMeasured(surface, share) => write!(
+                f,
+                "the measured table of `{surface}` lacks {} % of the directions above it (entries below 0): each \
+                 reflects as the next smaller half angle that was measured, or not at all where none was; use a \
+                 table that has them",
+                significant(100.0 * share, 3)
             ),
             Self::SpotsInView(spots) => {
                 let spots = Spots(spots);

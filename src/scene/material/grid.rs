@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::geometry::DVec3;
+use crate::num::digits::significant;
 use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
 
@@ -176,9 +177,15 @@ impl Grid {
                     let (x, y) = (values[a], values[b]);
                     if (x - y).abs() > RECIPROCITY * x.max(y) {
                         let cause = format!(
-                            "lines {} and {}: {x} and {y} sr⁻¹ for the same two directions exchanged (θ = {} and {}, φ = {}): \
+                            "lines {} and {}: {} and {} sr⁻¹ for the same two directions exchanged (θ = {} and {}, φ = {}): \
                              a surface reflects as much either way",
-                            stated[a], stated[b], theta[i], theta[o], azimuth
+                            stated[a],
+                            stated[b],
+                            significant(x, 6),
+                            significant(y, 6),
+                            theta[i],
+                            theta[o],
+                            azimuth
                         );
                         let cure = format!(
                             "let them differ by {} % of the larger at most, or check that values are without cosine",

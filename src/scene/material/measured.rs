@@ -6,8 +6,10 @@ use super::lobe::Lobe;
 use super::merl::{Channel, Merl};
 use super::slanted;
 use crate::geometry::DVec3;
+use crate::num::digits::significant;
 use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
+use crate::scene::texture::LEAST_ALBEDO;
 use crate::store::digest_of;
 
 /// An isotropic BRDF measured on a surface, from a file: one colour of a binary table of the MERL
@@ -66,6 +68,14 @@ impl Measured {
     /// SHA-256 of the file, in hexadecimal.
     pub fn digest(&self) -> &str {
         &self.digest
+    }
+
+    /// Share of the entries of a MERL table that was not measured.
+    pub(super) fn unmeasured(&self) -> f64 {
+        match &self.table {
+            Table::Merl(table) => table.unmeasured(),
+            Table::Grid(_) => 0.0,
+        }
     }
 
     /// f_r of directions above the surface, sr⁻¹.
@@ -139,13 +149,31 @@ impl Measured {
             return Ok(());
         }
         let cause = format!(
-            "the table reflects {:.4} of the light that arrives at {degrees}° from the normal: more than it receives",
-            reflected * largest
+            "the table reflects {} of the light that arrives at {degrees}° from the normal: more than it receives",
+            significant(reflected * largest, 5)
         );
-        let scale = (1000.0 * (1.0 + 0.5 * ALLOWANCE) / reflected).floor() / 1000.0;
-        let cure = format!(
-            "write `scale = {scale}` or less, or check that its values are in sr⁻¹ and without cosine"
-        );
+        let less = match scale_to(reflected) {
+            Some(scale) => format!("write `scale = {scale}` or less, or "),
+            None => String::new(),
+        };
+        let cure = format!("{less}check that its values are in sr⁻¹ and without cosine");
         Err(Fault::new(keys![], cause, cure))
     }
+}
+
+/// The largest number of three digits, as a scene file has it, that takes `reflected` to 1 at most;
+/// none where that is no albedo.
+fn scale_to(reflected: f64) -> Option<String> {
+    let exact = (1.0 + 0.5 * ALLOWANCE) / reflected;
+    if exact < LEAST_ALBEDO {
+        return None;
+    }
+    let power = libm::log10(exact).floor() as i32 - 2;
+    let digits = (exact / libm::exp10(f64::from(power))).floor();
+    let scale: f64 = format!("{digits}e{power}").parse().ok()?;
+    Some(if scale >= 1e-3 {
+        scale.to_string()
+    } else {
+        format!("{scale:e}")
+    })
 }

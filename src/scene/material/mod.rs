@@ -130,6 +130,19 @@ impl Material {
         }
     }
 
+    /// Share of the entries of a measured table that was not measured; of a mixture that of the
+    /// part that lacks most.
+    pub fn unmeasured(&self) -> f64 {
+        match self {
+            Self::Measured(m) => m.unmeasured(),
+            Self::Mixture(parts) => {
+                let each = parts.iter().map(|p| p.material.unmeasured());
+                each.fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Where the light that leaves along `wo` comes from, roughly; of a mixture each part has
     /// its own.
     pub fn lobe(&self, albedo: f64, wo: DVec3) -> Lobe {

@@ -3,6 +3,7 @@ use std::f64::consts::{PI, TAU};
 use super::file::MaterialTable;
 use super::*;
 use crate::num::stream::{Key, Sampling, Stream};
+use crate::scene::Scene;
 
 /// Pairs of directions above the surface, uniform per solid angle.
 pub(super) fn directions(n: usize) -> impl Iterator<Item = (DVec3, DVec3)> {
@@ -57,7 +58,7 @@ pub(crate) fn zoo() -> Vec<(String, Material)> {
     add("{ coated = 1.0, roughness = 0.2, ior = 3.5 }", b"");
     add("{ paint = 1.0, roughness = 0.2, ior = 3.5 }", b"");
     let gloss = Ggx::new(0.25);
-    let shiny = merl::tests::written([90, 90, 180], |h, d, p| {
+    let shiny = merl::tests::written(|h, d, p| {
         let m = DVec3::new(h.sin(), 0.0, h.cos());
         0.1 + 0.02 * (2.0 * p).cos() * d.sin().powi(2) + 0.04 * gloss.distribution(m)
     });
@@ -295,6 +296,33 @@ fn wrong_tables_are_refused_with_a_cure() {
         "{error}"
     );
     assert!(material("{ measured = \"a.csv\", scale = 0.8 }", bright.as_bytes()).is_ok());
+    // Of a Lambertian table of the value f the largest scale is 1/(π f), in three digits downwards:
+    // 1/2857 is 3.500e-4.
+    for (value, scale, reflects) in [
+        (2857.0 / PI, "scale = 3.5e-4`", "reflects 2857.0 of"),
+        (20.0 / PI, "scale = 0.05`", "reflects 20.000 of"),
+        (1e29 / PI, "scale = 1e-29`", "reflects 1.0000e29 of"),
+    ] {
+        let bright = format!("theta_i,theta_o,phi,value\n0,0,0,{value:e}\n");
+        let error = material("{ measured = \"a.csv\" }", bright.as_bytes()).unwrap_err();
+        assert!(error.contains(scale) && error.contains(reflects), "{error}");
+        let own = scale.trim_end_matches('`');
+        let scaled = format!("{{ measured = \"a.csv\", {own} }}");
+        assert!(material(&scaled, bright.as_bytes()).is_ok(), "{own}");
+    }
+    // No albedo is as little as 1e-300.
+    let error = material(
+        "{ measured = \"a.csv\" }",
+        b"theta_i,theta_o,phi,value\n0,0,0,1e300\n",
+    );
+    let error = error.unwrap_err();
+    assert!(
+        error.contains("reflects 3.1416e300 of") && !error.contains("scale ="),
+        "{error}"
+    );
+    let uneven = "theta_i,theta_o,phi,value\n0,0,0,0\n0,9,0,1e300\n9,0,0,1\n9,9,0,0\n";
+    let error = material("{ measured = \"a.csv\" }", uneven.as_bytes()).unwrap_err();
+    assert!(error.contains("1.00000 and 1.00000e300"), "{error}");
     // A peak of half a degree: 2π ∫ of its hat sinθ cosθ dθ = 2π (1.25°)(0.25°) = 5.98e-4 to 1e-3
     // of it.
     let peak = |value: f64| {
@@ -309,6 +337,29 @@ fn wrong_tables_are_refused_with_a_cure() {
         "{error}"
     );
     assert!(peak(1600.0).is_ok());
+}
+
+/// A wall whose table lacks the half of its directions, alone or in a mixture, is suspicious; one
+/// that has them all is not.
+#[test]
+fn a_table_that_was_not_measured_is_suspicious() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = "{ measured = \"wall.binary\", channel = \"red\" }";
+    let mixed = format!("{{ mixture = [{{ weight = 0.5, material = {part} }}] }}");
+    for (lacking, material) in [(-1.0, part), (-1.0, &mixed), (0.1, part)] {
+        let table = merl::tests::written(|_, _, p| if p < 0.5 * PI { 0.1 } else { lacking });
+        std::fs::write(folder.path().join("wall.binary"), table).unwrap();
+        let text = include_str!("../../../scenes/bench.toml");
+        let text = text.replacen("{ lambertian = 0.8 }", material, 1);
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        let scene = Scene::load(&path.to_string_lossy()).unwrap();
+        let told = scene.warnings().iter().any(|w| {
+            let words = w.to_string();
+            words.contains("table of `wall` lacks 50.0 % of the directions")
+        });
+        assert_eq!(told, lacking < 0.0, "{:?}", scene.warnings());
+    }
 }
 
 /// θ_i, θ_o and φ in degrees as directions.

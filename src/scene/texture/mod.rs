@@ -16,7 +16,7 @@ pub(super) type Files<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// A smaller albedo than this is taken for a mistake: products of them would leave the range of
 /// f64.
-const LEAST_ALBEDO: f64 = 1e-30;
+pub(super) const LEAST_ALBEDO: f64 = 1e-30;
 /// More cells along a side than this are taken for a mistake.
 const MOST_CELLS: u32 = 4096;
 
@@ -195,12 +195,12 @@ fn albedo(rho: f64) -> Result<f64, Fault> {
         return Ok(rho);
     }
     if rho > 0.0 && rho < LEAST_ALBEDO {
-        let cause = format!("albedo {rho} is less than {LEAST_ALBEDO:e}, and not 0");
+        let cause = format!("albedo {rho:e} is less than {LEAST_ALBEDO:e}, and not 0");
         return Err(Fault::new(keys![], cause, "use 0 for black"));
     }
     Err(Fault::new(
         keys![],
-        format!("albedo {rho} is outside [0, 1]: a surface cannot reflect more than it receives"),
+        format!("albedo {rho:?} is outside [0, 1]: a surface cannot reflect more than it receives"),
         "give a number from 0 to 1",
     ))
 }
