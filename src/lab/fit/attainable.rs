@@ -12,7 +12,8 @@ use crate::recovery::{
 /// the method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attainable {
-    /// Of all reflectances between 0 and 1 (above 0, where the scale is free): of `joint`.
+    /// Of all reflectances between 0 and 1 (above 0, where the scale is free): of `joint`, or of
+    /// another picture of such reflectances that was found and fits.
     pub possible: Fit,
     /// Of all numbers: of `joint-unbounded`.
     pub any: Option<Fit>,
@@ -71,6 +72,22 @@ impl Attainable {
         };
         let scale = |f: &&Recovered| f.nuisance.as_ref().and_then(|n| n.scale);
         let free = found.iter().any(|f| scale(f).is_some());
+        let top = if free { f64::INFINITY } else { 1.0 };
+        let such = |f: &&&Recovered| f.reflectance.iter().all(|x| (0.0..=top).contains(x));
+        let has_joint = found.iter().any(|f| f.method == Method::Joint);
+        if weighted && !has_joint {
+            let fits = found
+                .iter()
+                .filter(such)
+                .filter_map(|f| fit(problem, noise, f));
+            if let Some(possible) = fits.into_iter().find(|own| own.fits) {
+                return Ok(Some(Self {
+                    possible,
+                    any: None,
+                    brightness: 1.0,
+                }));
+            }
+        }
         let of = |possible: Fit| Self {
             possible,
             any: by(Method::JointUnbounded).ok().flatten(),
