@@ -180,7 +180,7 @@ mod tests {
                 .collect()
         };
         let dead = |k: usize| {
-            if k % 150 == 0 {
+            if k.is_multiple_of(150) {
                 (k / 150) as f64
             } else {
                 1000.55
@@ -219,7 +219,7 @@ mod tests {
             assert_eq!(of(glow).clipped(), None, "{top}");
             let ridge = taken(&|k| top - 0.04 * ((k % 128) as f64 - 64.0).powi(2), 0.0);
             assert_eq!(of(ridge).clipped(), None, "{top}");
-            let board = taken(&|k| if k % 3 == 0 { 10.0 } else { top }, 0.0);
+            let board = taken(&|k| if k.is_multiple_of(3) { 10.0 } else { top }, 0.0);
             assert_eq!(of(board).clipped(), None, "{top}");
         }
     }
