@@ -94,6 +94,13 @@ def whole(value: Any, name: str, least: int = 0, most: int = 2**64 - 1) -> int:
     return number
 
 
+def flag(value: Any, name: str) -> bool:
+    """True or False; no other value, of which "no" would be true."""
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise InputError(f"{name} is {value!r}\n  cure: give True or False")
+
+
 def threads_of(value: Any) -> int | None:
     """How many threads work; None: all cores."""
     return None if value is None else whole(value, "threads", 1, 4096)

@@ -6,7 +6,7 @@ from typing import Any, TypedDict
 
 from numpy.typing import ArrayLike
 
-from ._arrays import maybe, setting, shaped, whole
+from ._arrays import flag, maybe, setting, shaped, whole
 
 
 class Beside(TypedDict):
@@ -41,12 +41,12 @@ def beside(
     """They, checked, of photographs of this shape, pixels × spots."""
     glare, flags = maybe(glare_pattern, "glare_pattern"), maybe(left_out, "left_out")
     return Beside(
-        frame_constant=bool(frame_constant),
+        frame_constant=flag(frame_constant, "frame_constant"),
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         frame_patterns=maybe(frame_patterns, "frame_patterns"),
-        background=bool(background),
+        background=flag(background, "background"),
         glare_pattern=None if glare is None else shaped(glare, shape, "glare_pattern"),
-        free_scale=bool(free_scale),
+        free_scale=flag(free_scale, "free_scale"),
         frame_gain=setting(frame_gain, "frame_gain"),
         scale_error=setting(scale_error, "scale_error"),
         left_out=None if flags is None else shaped(flags, shape, "left_out"),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, maybe, number, pair, setting, threads_of, whole
+from ._arrays import Floats, flag, maybe, number, pair, setting, threads_of, whole
 from ._finding import Finding
 from ._model import Integration
 from ._phi import Phi
@@ -164,14 +164,14 @@ def calibrate(
         flags,
         free=given,
         frame_gain=setting(phi.frame_gain if frame_gain is None else frame_gain, "frame_gain"),
-        free_scale=bool(free_scale),
-        error_field=bool(error_field),
-        background=bool(background),
+        free_scale=flag(free_scale, "free_scale"),
+        error_field=flag(error_field, "error_field"),
+        background=flag(background, "background"),
         replicates=phi.replicates,
         # A background takes what all spots of a pixel of photographs share.
         errors_name="independent" if background and not phi.is_rendered else phi.errors,
         elements=pair(elements, "elements"),
-        considered=bool(occlusion),
+        considered=flag(occlusion, "occlusion"),
         integration_name=integration,
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         starts=count,
@@ -253,10 +253,10 @@ def locate(
         range=(low, high),
         steps=count,
         elements=pair(elements, "elements"),
-        considered=bool(occlusion),
+        considered=flag(occlusion, "occlusion"),
         integration_name=integration,
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
-        background=bool(background),
+        background=flag(background, "background"),
         orders=tried,
         seed=whole(seed, "seed"),
         threads=threads_of(threads),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, matrix, pair, vector
+from ._arrays import Floats, flag, matrix, pair, vector
 from ._scene import Scene, scene_at
 from .errors import InputError
 
@@ -172,7 +172,7 @@ class Model:
 def _of_scene(
     scene: Scene, kernel: Kernel, elements: tuple[int, int] | None, occlusion: bool, integration: Integration
 ) -> Model:
-    native = _native.Model.of_scene(scene._core, kernel, elements, bool(occlusion), integration)
+    native = _native.Model.of_scene(scene._core, kernel, elements, flag(occlusion, "occlusion"), integration)
     return Model(native, (scene, kernel, elements, occlusion, integration))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, matrix, pair, setting, shaped, spread, threads_of, vector, whole, without
+from ._arrays import Floats, flag, matrix, pair, setting, shaped, spread, threads_of, vector, whole, without
 from ._beside import beside
 from ._model import Integration, Kernel, Model, model, model_of
 from ._phi import Phi
@@ -405,7 +405,7 @@ def recover(
         levels=_levels(levels),
         weighting=weighting,
         bands=setting(bands, "bands"),
-        error_field=bool(error_field),
+        error_field=flag(error_field, "error_field"),
     )
     others = beside(
         flux.shape,

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, matrix, number, shaped, spread, threads_of, whole, without
+from ._arrays import Floats, flag, matrix, number, shaped, spread, threads_of, whole, without
 from ._beside import beside
 from ._finding import Finding
 from ._model import Integration, Kernel, Model
@@ -179,7 +179,7 @@ def validate(
         noise,
         kernel_name=kernel or "physical",
         integration_name=integration,
-        considered=occlusion is None or bool(occlusion),
+        considered=occlusion is None or flag(occlusion, "occlusion"),
         significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         paths=paths,

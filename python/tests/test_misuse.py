@@ -104,6 +104,7 @@ MISUSES = [
     ("a side in place of a model's", Input, lambda s, p, t: setattr(phicam.model(s), "laser_side", A), "model_of"),
     ("a side that is changed", ValueError, lambda s, p, t: phicam.model(s).camera_side.fill(1.0), "read-only"),
     ("one photograph by its laser side", Input, lambda s, p, t: phicam.recover(A[:, 0], A, "pinv"), "joint-unbounded"),
+    ("a word for a switch", Input, lambda s, p, t: phicam.recover(p, background="no"), "True or False"),
     ("options as keywords", Input, lambda s, p, t: phicam.recover(p, method="joint", elements=(99, 99)), "(elements)"),
     ("no such spot", Input, lambda s, p, t: p.frame(99), "0 to 7"),
     ("more than the memory", Input, lambda s, p, t: phicam.render(s.replace({"camera.pixels": (8000, 8000)})), "GiB"),

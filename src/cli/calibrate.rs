@@ -5,7 +5,7 @@ use super::beside::frame_gain;
 use super::console::Console;
 use super::failure::{Failure, NOTHING_KEPT};
 use super::findings::deliver;
-use super::load_run::{read_bare_scene, read_run};
+use super::load_run::read_run_or_scene;
 use super::mask::refuse_clipped;
 use super::output;
 use super::process::pool;
@@ -13,7 +13,7 @@ use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
 use super::spelled::Spelled;
 use super::unexplained::{elements, of_files, of_run};
 use super::{Outcome, progress};
-use crate::folder::{Record, write_copies};
+use crate::folder::write_copies;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
 use crate::lab::{CalibrationPlan, Found, Free, Work};
@@ -21,12 +21,7 @@ use crate::report::Invocation;
 use crate::scene::Scene;
 
 pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
-    let (scene, record) = if args.phi.is_some() && !args.dir.join(Record::FILE).exists() {
-        (read_bare_scene(&args.dir, console)?, None)
-    } else {
-        let (scene, record) = read_run(&args.dir, console)?;
-        (scene, Some(record))
-    };
+    let (scene, record) = read_run_or_scene(&args.dir, args.phi.as_deref(), console)?;
     let own = record.as_ref().filter(|_| args.phi.is_none());
     let origin = own.map(|record| &record.origin);
     let plan = CalibrationPlan {

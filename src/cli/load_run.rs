@@ -53,7 +53,7 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
 
 /// The scene of photographs that come without a run. It is told where `phicam calibrate` wrote it
 /// and it has changed since.
-pub(super) fn read_bare_scene(dir: &Path, console: Console) -> Result<Scene, Failure> {
+fn read_bare_scene(dir: &Path, console: Console) -> Result<Scene, Failure> {
     let path = dir.join(SCENE);
     let scene = console.load_any_scene(&path.to_string_lossy())?;
     let account = dir.join(CALIBRATION);
@@ -72,6 +72,20 @@ pub(super) fn read_bare_scene(dir: &Path, console: Console) -> Result<Scene, Fai
     Ok(scene)
 }
 
+/// The scene and the account of a run, or where photographs are given, which measured ones come
+/// without, the scene in a folder.
+pub(super) fn read_run_or_scene(
+    dir: &Path,
+    phi: Option<&Path>,
+    console: Console,
+) -> Result<(Scene, Option<Record>), Failure> {
+    if phi.is_some() && !dir.join(Record::FILE).exists() {
+        return Ok((read_bare_scene(dir, console)?, None));
+    }
+    let (scene, record) = read_run(dir, console)?;
+    Ok((scene, Some(record)))
+}
+
 /// What to give where `given` is not the folder of a run.
 fn folder_meant(given: &Path) -> String {
     let name = given.to_string_lossy();
@@ -88,8 +102,8 @@ fn folder_meant(given: &Path) -> String {
         ),
         _ if given.join("phi.npy").is_file() && given.join("scene.toml").is_file() => {
             format!(
-                "photographs that phicam did not write: `phicam recover`, `calibrate` and `validate` take them with \
-                 `--phi {}`, other commands take the folder that `phicam import` makes of the camera's files",
+                "photographs that phicam did not write: `phicam recover`, `calibrate` and `validate` (with --stderr) take \
+                 them with `--phi {}`, other commands take the folder that `phicam import` makes of the camera's files",
                 given.join("phi.npy").display()
             )
         }

@@ -8,7 +8,7 @@ use super::args::RecoverArgs;
 use super::beside::certainty;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_bare_scene, read_run};
+use super::load_run::read_run_or_scene;
 use super::recover_memory::{self, Held};
 use super::recover_options;
 use super::recovered::{collect, tell, write};
@@ -43,14 +43,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         let cure = "give the folder of a run, or --camera-side and --phi";
         return Err(Failure::usage("nothing says what is to be recovered", cure));
     };
-    // Measured photographs come without a run: a scene.toml is enough for them.
-    let measured = args.phi.is_some() && !dir.join(Record::FILE).exists();
-    let (scene, record) = if measured {
-        (read_bare_scene(dir, console)?, None)
-    } else {
-        let (scene, record) = read_run(dir, console)?;
-        (scene, Some(record))
-    };
+    let (scene, record) = read_run_or_scene(dir, args.phi.as_deref(), console)?;
     if let Some(record) = record
         .as_ref()
         .filter(|_| is_own(args.phi.as_deref(), dir, PHI))

@@ -6,7 +6,7 @@ use super::args::ValidateArgs;
 use super::beside::{Beside, PhotographSize};
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_left_out, read_photographs, read_run, read_stderr};
+use super::load_run::{read_left_out, read_photographs, read_run_or_scene, read_stderr};
 use super::mask::{read_mask, refuse_clipped};
 use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
@@ -77,13 +77,16 @@ struct Given {
 fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
     let run = match &args.dir {
         None => None,
-        Some(dir) => Some((dir, read_run(dir, console)?)),
+        Some(dir) => {
+            let (scene, record) = read_run_or_scene(dir, args.phi.as_deref(), console)?;
+            Some((dir, scene, record))
+        }
     };
     let other = args.against.as_deref();
     let other = other.map(|s| console.load_scene(s)).transpose()?;
     match (&args.phi, &args.stderr, run) {
         (Some(phi), Some(stderr), run) => {
-            let own = run.map(|(_, (scene, _))| scene);
+            let own = run.map(|(_, scene, _)| scene);
             let scene = other.or(own).ok_or_else(|| {
                 let cause = "nothing says of which scene the matrix is";
                 Failure::usage(cause, "give the folder of a run, or --against SCENE")
@@ -101,7 +104,7 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 scene,
             })
         }
-        (_, _, Some((dir, (scene, record)))) => {
+        (_, _, Some((dir, scene, Some(record)))) => {
             let noise = known_noise(dir, &record)?;
             if !args.beside.free_scale {
                 refuse_unscaled(dir, &record)?;
@@ -127,7 +130,7 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 run: Some((dir.clone(), record)),
             })
         }
-        (_, _, None) => {
+        _ => {
             let cure = "give the folder of a run, or --phi FILE --stderr FILE --against SCENE";
             Err(Failure::usage("there is nothing to validate", cure))
         }

@@ -12,7 +12,8 @@ use crate::lab::Errors;
 #[derive(Debug, Arguments)]
 #[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "by centres", "Šidák"]))]
 pub(in crate::cli) struct ValidateArgs {
-    /// Folder of a run; with --phi it may be left out, if --against says of which scene
+    /// Folder of a run; with --phi a folder with a scene.toml is enough, or none, if --against says
+    /// of which scene
     #[arg(required_unless_present_all = ["phi", "against"])]
     pub dir: Option<PathBuf>,
     #[command(flatten)]
