@@ -213,7 +213,8 @@ pub(super) fn relative_errors(
         console.say(format!(
             "warning: fewer than 8 pixels or spots do not tell what light to expect: the noise is taken \
              relative to the entries with their noise, and where they are weighted one by one (joint-gp, \
-             --weighting entries) the whole is too dark by {} of its standard errors; give --stderr",
+             --weighting entries, errors that are no product of one by pixel and one by spot) the whole is too \
+             dark by {} of its standard errors; give --stderr",
             figure(too_dark, 2)
         ));
     }

@@ -8,6 +8,7 @@ use super::evidence::{Evidence, Test};
 use super::gains::Gains;
 use super::residual::{Residual, Weights};
 use super::score::{Derivatives, Remaining, Score, score};
+use super::with_light::WithLight;
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p, sidak_threshold};
 use crate::num::summation::mean_and_stderr;
@@ -67,7 +68,7 @@ pub struct Agreement {
     pub significance: f64,
     /// Entries compared.
     pub entries: usize,
-    /// Entries left out, their error being untrusted.
+    /// Entries left out: their error is untrusted, or traced and modelled they are dark.
     pub left_out: usize,
     /// Whether they are of a render.
     #[serde(default)]
@@ -97,6 +98,9 @@ pub struct Agreement {
     pub z_limit: f64,
     /// Probability of a |z| as large among all entries (Šidák).
     pub largest_p: f64,
+    /// Correlation of z² with ln of the modelled light, where it is more than chance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_light: Option<f64>,
     /// Relative Frobenius difference ‖traced − modelled‖/‖modelled‖.
     pub relative_difference: f64,
     /// What the traced standard error alone makes of that: ‖stderr‖/‖modelled‖.
@@ -148,9 +152,9 @@ pub(super) fn share(significance: f64, deviations: bool) -> f64 {
 /// * the score tests of the parameters of the scene ([`Score`]): half of their share is for all of
 ///   these, half for those of single spots, each against its Šidák limit.
 ///
-/// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to
-/// rounding. Where every entry is left out, or dark in both, there is no evidence and no agreement;
-/// nor where what was fitted first has as many unknowns as there are entries, nor where nothing
+/// Entries whose standard error is 0 (light that never varies) are compared to rounding, and those
+/// that are dark in both besides are left out. Where every entry is, there is no evidence and no
+/// agreement; nor where what was fitted first has as many unknowns as there are entries, nor where nothing
 /// speaks against a model of which half may be its integration.
 pub fn agree(
     evidence: Evidence<'_>,
@@ -236,6 +240,14 @@ pub fn agree(
         largest_z: largest,
         z_limit: sidak_threshold(share, entries as u64),
         largest_p,
+        with_light: counted
+            .iter()
+            .fold(WithLight::default(), |mut sums, i| {
+                sums.add(evidence.model[*i], each[*i] * each[*i]);
+                sums
+            })
+            .correlation()
+            .filter(|_| test.known.errors == Errors::Independent),
         relative_difference: relative(norm(&|i| evidence.traced[i] - evidence.model[i])),
         relative_noise: relative(norm(&|i| evidence.stderr[i])),
         relative_discretisation: discretisation,

@@ -250,7 +250,7 @@ impl Certainty {
 }
 
 /// Standard errors 1/√n beyond which a correlation of what is left of neighbours is no chance.
-const BEYOND_CHANCE: f64 = 6.0;
+pub(super) const BEYOND_CHANCE: f64 = 6.0;
 
 /// The correlation of what is left of neighbouring pixels, over `entries` entries of independent
 /// noise (of variances unknown as many as have the scatter √Σ (z z′)² of Σ z z′), where chance

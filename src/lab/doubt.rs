@@ -13,7 +13,7 @@ use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
     DETERMINED, HALF, alike_untold, between_neighbours, by_entries, few_replicates, integrated,
-    overstated, shared, too_bright, undetermined, uneven, unseen,
+    overstated, shared, too_bright, undetermined, uneven, unseen, with_light,
 };
 use misfit::{misfit, none_possible, outlier};
 
@@ -41,6 +41,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         unjudged(found, judged),
         shared(judged),
         between_neighbours(judged),
+        with_light(judged),
         few_replicates(found, judged),
         by_entries(judged),
         integrated(found, judged),
@@ -266,7 +267,7 @@ fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
         Weighting::Separable { .. } | Weighting::EntryByEntry => 1.0,
         Weighting::Unweighted => {
             let left = judged.fit.as_ref().map_or(1.0, |fit| fit.dof.max(1.0));
-            (2.0 * solver.objective / left).max(f64::MIN_POSITIVE)
+            (found.residual * found.residual / left).max(f64::MIN_POSITIVE)
         }
     };
     let above = 2.0 * solver.gap / unit;

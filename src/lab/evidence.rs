@@ -25,9 +25,10 @@ pub struct Evidence<'a> {
 }
 
 impl Evidence<'_> {
-    /// Whether an entry counts.
+    /// Whether an entry counts: 0 ± 0 where the model is dark too is no evidence of anything.
     pub(super) fn counts(&self, at: usize) -> bool {
-        self.left_out.is_none_or(|flags| flags[at] == 0.0)
+        let dark = [self.traced, self.model, self.stderr].map(|of| of[at]) == [0.0; 3];
+        !dark && self.left_out.is_none_or(|flags| flags[at] == 0.0)
     }
 
     /// What is left of a deviation, W, by what was fitted first; none if that is nothing.

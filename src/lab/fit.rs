@@ -39,7 +39,6 @@ use crate::recovery::{
 };
 pub use attainable::Attainable;
 use attainable::LeftOver;
-pub(super) use attainable::ROUGH;
 pub use residuals::{Outlier, Residuals};
 
 /// Elements up to which the best picture of all is looked for where no method that was asked for
@@ -79,6 +78,10 @@ pub struct Fit {
     /// Correlation of what is left of neighbouring pixels, where it is more than chance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<f64>,
+    /// Correlation of z² with ln of the light that the picture would photograph, where it is more
+    /// than chance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_light: Option<f64>,
 }
 
 impl Fit {

@@ -226,6 +226,7 @@ mod unmodelled;
 mod validation;
 mod verdict;
 mod which_errors;
+mod with_light;
 
 pub use agreement::{Agreement, Entry, EntryBound, agree};
 pub use aim::{SAMPLES, aimed};

@@ -186,6 +186,15 @@ impl<'a> Residual<'a> {
         })
     }
 
+    /// θ of θ·d that is fitted to light that changes by `change`, in all columns.
+    pub(super) fn response(&self, d: &Matrix, change: &Matrix) -> f64 {
+        let along = |of: &Matrix| {
+            let terms = d.iter().zip(of).zip(&self.weights);
+            terms.map(|((d, x), w)| w * d * x).sum::<f64>()
+        };
+        along(change) / along(d)
+    }
+
     /// What factors that are known only roughly add to the variance of Σ w d r: all rows of a frame
     /// share them, so that no scatter of rows shows them.
     fn of_factors(&self, d: &Matrix) -> f64 {

@@ -71,6 +71,7 @@ pub(in crate::lab) fn fit(chi2_per_dof: f64) -> Fit {
         outlier: None,
         pooled: None,
         neighbours: None,
+        with_light: None,
     }
 }
 
@@ -88,6 +89,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
         occlusion: None,
         pooled: None,
         seldom: 0,
+        with_light: None,
         significance: 0.01,
         entries: 30720,
         left_out: 0,

@@ -74,6 +74,12 @@ impl Score {
 /// Share of the significance level of each family: the scene's parameters, and the spots'.
 const FAMILIES: f64 = 0.5;
 
+/// Sizes that are tried, each so many times the last at most, until as much as this of what the
+/// straight model needs is fitted of it.
+const TRIES: usize = 6;
+const MOST_LARGER: f64 = 8.0;
+const ENOUGH: f64 = 0.97;
+
 /// Fits every parameter, at `significance` for all together.
 pub(super) fn score(
     evidence: Evidence<'_>,
@@ -95,7 +101,7 @@ pub(super) fn score(
         ..Score::default()
     };
     let of: Vec<Option<Matrix>> = (0..parameters.len()).map(|k| (derivatives.of)(k)).collect();
-    for (parameter, d) in parameters.iter().zip(&of) {
+    for (index, (parameter, d)) in parameters.iter().zip(&of).enumerate() {
         let fit = |spot: Option<usize>, limit: f64, family: usize, name: &str| {
             let (d, columns) = left_of(&evidence, d.as_ref()?, spot)?;
             let fit = residual.fit(&d, &columns)?;
@@ -121,7 +127,17 @@ pub(super) fn score(
             })
         };
         match fit(None, found.limits[0], parameters.len(), &parameter.name) {
-            Some(deviation) => found.deviations.push(deviation),
+            Some(mut deviation) => {
+                if derivatives.bends && derivatives.are_named {
+                    let (d, _) = d.as_ref().and_then(|d| left_of(&evidence, d, None)).unzip();
+                    let response = |size: f64| {
+                        let [change, _] = (derivatives.moved)(index, size)?;
+                        Some(residual.response(d.as_deref()?, &evidence.left_of(change)?))
+                    };
+                    deviation.detectable = either_way(deviation.detectable, response);
+                }
+                found.deviations.push(deviation);
+            }
             None => found.untested.push(parameter.name.clone()),
         }
         for (spot, name) in (0..spots).filter_map(|l| Some((l, parameter.each_spot.as_ref()?))) {
@@ -147,6 +163,24 @@ pub(super) fn score(
         found.picture = causes.picture(best.as_ref());
     }
     found
+}
+
+/// The smallest deviation of either sign that is fitted as `straight`, which the straight model
+/// needs: light that bends or steps on the way may answer one side less, or later. `response` is
+/// what is fitted of a deviation.
+fn either_way(straight: f64, response: impl Fn(f64) -> Option<f64>) -> f64 {
+    let mut size = straight;
+    for _ in 0..TRIES {
+        let [Some(back), Some(forth)] = [-size, size].map(&response) else {
+            return straight;
+        };
+        let least = forth.min(-back);
+        if least.is_nan() || least >= ENOUGH * straight {
+            break;
+        }
+        size *= (straight / least.max(0.0)).min(MOST_LARGER);
+    }
+    size
 }
 
 /// What is fitted of a derivative, and the spots where it is not 0; none if what was fitted first

@@ -126,6 +126,9 @@ pub fn validate(
             parameters: &off.parameters,
             of: &|index| off.of(index),
             moved: &|index, size| off.moved(index, size),
+            bends: scene
+                .relays()
+                .any(|(_, wall)| wall.seams().is_none_or(|seams| !seams.is_empty())),
             picture: (!is_known).then_some(&picture),
             are_named: true,
         },

@@ -10,6 +10,7 @@ use super::grounds::FEWEST;
 use super::score::{Deviation, SINGLE_ELEMENTS, Score};
 use super::summary::{facts, percent};
 use super::tails::missed;
+use super::with_light::goes_with_light;
 use crate::num::digits::{figure, significant};
 
 /// Part of the noise up to which bounds of the model change no χ² to speak of.
@@ -21,7 +22,7 @@ impl Agreement {
         let left_out = if self.left_out > 0 {
             let all = self.entries + self.left_out;
             format!(
-                "; {} of {all} entries left out, their error not being trusted or as asked",
+                "; {} of {all} entries left out: dark in both, their error not trusted, or as asked",
                 self.left_out
             )
         } else {
@@ -123,6 +124,10 @@ impl Agreement {
         }
         told.push(("test", test));
         told.extend(self.overstated().map(|words| ("errors", words)));
+        // A model that is wrong leaves more where there is more light.
+        let whole = |_: &f64| self.chi2_p >= share(self.significance, self.score.is_some());
+        let with_light = self.with_light.filter(whole).map(goes_with_light);
+        told.extend(with_light.map(|words| ("errors", words)));
         if !self.agrees && self.evidence {
             told.push(("rejected by", self.rejected_by()));
             if !self.unmodelled.is_empty() {

@@ -25,11 +25,12 @@ named! {
     /// By what the joint methods weigh the entries of Φ.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum WeightRule {
-        /// By the noise: separable weights fitted to 1/σ², where standard errors are given.
+        /// By the noise, where standard errors are given: separable weights fitted to 1/σ², and
+        /// 1/σ² of each entry where that is no product of one by pixel and one by spot.
         #[default]
         Noise = "noise": "By the noise, where it is known",
-        /// By 1/σ² of each entry, wherever standard errors are given and their normal equations
-        /// hold what the noise leaves.
+        /// By 1/σ² of each entry, where standard errors are given: by normal equations that hold
+        /// what the noise leaves, or by all rows where they do not and these are few enough.
         Entries = "entries":
             "By the noise of each entry, as joint-gp and more than 512 elements have it",
         /// All alike.

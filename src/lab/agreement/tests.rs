@@ -1,5 +1,6 @@
 use super::*;
 use crate::lab::certainty::Certainty;
+use crate::lab::misplaced::normal;
 use crate::lab::score::{Derivatives, Parameter};
 use crate::num::stream::{Key, Sampling, Stream};
 
@@ -225,6 +226,7 @@ fn a_deviation_of_what_entries_share_is_told() {
         of: &|_| Some(slope.clone()),
         moved: &|_, size| Some([&slope * size, slope.clone()]),
         picture: None,
+        bends: false,
         are_named: true,
     };
     let evidence = Evidence {
@@ -250,4 +252,109 @@ fn a_deviation_of_what_entries_share_is_told() {
         words.contains("CLOSER") && words.contains("What entries share"),
         "{words}"
     );
+}
+
+/// Frames that are dark, traced and modelled, change nothing: χ², its freedom and what the largest
+/// |z| may be are those of the other frames alone, and nothing is said of the standard errors.
+#[test]
+fn what_is_dark_in_both_is_no_evidence() {
+    let (traced, stderr) = sample(3, false);
+    let model = Matrix::from_element(ROWS, COLUMNS, 1.0);
+    let test = Test {
+        significance: 1e-3,
+        known: Certainty::new(Errors::Independent, Some(REPLICATES)),
+    };
+    let of = |dark: usize| {
+        let more = |m: &Matrix| m.clone().resize_horizontally(COLUMNS + dark, 0.0);
+        let [traced, stderr, model] = [&traced, &stderr, &model].map(more);
+        let evidence = Evidence {
+            traced: &traced,
+            stderr: &stderr,
+            model: &model,
+            bound: None,
+            left_out: None,
+            eliminated: None,
+        };
+        agree(evidence, test, None).0
+    };
+    let (all, dark) = (of(0), of(3 * COLUMNS));
+    let told = |a: &Agreement| (a.chi2_per_dof, a.dof, a.z_limit, a.entries, a.facts().len());
+    assert_eq!(told(&dark), told(&all));
+    assert_eq!(dark.left_out, 3 * COLUMNS * ROWS);
+}
+
+/// Light that answers a shift to the left a quarter as much as one to the right: what is detected
+/// either way is four times what a straight model needs; of light that is straight it is that.
+#[test]
+fn what_is_detected_is_so_either_way() {
+    let (traced, stderr) = sample(1, false);
+    let model = Matrix::from_element(ROWS, COLUMNS, 1.0);
+    let evidence = Evidence {
+        traced: &traced,
+        stderr: &stderr,
+        model: &model,
+        bound: None,
+        left_out: None,
+        eliminated: None,
+    };
+    let test = Test {
+        significance: 1e-3,
+        known: Certainty::STATED,
+    };
+    let slope = Matrix::from_fn(ROWS, COLUMNS, |p, l| libm::sin((p + 3 * l) as f64));
+    let shift = Parameter {
+        name: "view, x".to_owned(),
+        unit: "in".to_owned(),
+        reach: None,
+        same: Vec::new(),
+        each_spot: None,
+    };
+    let detected = |left: f64, bends: bool| {
+        let change = |size: f64| &slope * (if size < 0.0 { left * size } else { size });
+        let derivatives = Derivatives {
+            parameters: std::slice::from_ref(&shift),
+            of: &|_| Some(slope.clone()),
+            moved: &|_, size| Some([change(size), slope.clone()]),
+            bends,
+            picture: None,
+            are_named: true,
+        };
+        let found = agree(evidence, test, Some(&derivatives)).0;
+        found.score.unwrap().deviations[0].detectable
+    };
+    let straight = detected(1.0, false);
+    for (left, more) in [(1.0, 1.0), (0.25, 4.0), (1.5, 1.0)] {
+        let found = detected(left, true) / straight;
+        assert!((found / more - 1.0).abs() < 0.01, "{left}: {found}");
+    }
+}
+
+/// Noise that is a share of each entry, stated as one size for all, is told to grow with the light,
+/// whether χ² is right or not; of right errors nothing is said.
+#[test]
+fn errors_that_do_not_go_with_the_light_are_told() {
+    let model = Matrix::from_fn(40, 10, |p, l| libm::exp(libm::sin((7 * p + l) as f64)));
+    let own = &model * 0.01;
+    let alike = model.map(|_| (own.norm_squared() / 400.0).sqrt());
+    for seed in 0..20 {
+        let mut draw = normal(seed);
+        let traced = model.zip_map(&own, |x, s| x + s * draw()[0]);
+        let told = |stderr: &Matrix| {
+            let evidence = Evidence {
+                traced: &traced,
+                stderr,
+                model: &model,
+                bound: None,
+                left_out: None,
+                eliminated: None,
+            };
+            let test = Test {
+                significance: 1e-3,
+                known: Certainty::STATED,
+            };
+            let facts = agree(evidence, test, None).0.facts();
+            facts.iter().any(|(_, words)| words.contains("GROWS"))
+        };
+        assert!(told(&alike) && !told(&own), "{seed}");
+    }
 }

@@ -19,7 +19,7 @@ use super::geometry::Light;
 use super::posterior::Columns;
 use crate::lab::certainty::Errors;
 use crate::lab::error::LabError;
-use crate::lab::light_left_out::LightLeftOut;
+use crate::lab::light_left_out::{LightLeftOut, Neighbours};
 use crate::lab::over_view::{PATTERNS, over_view};
 use crate::matrix::Matrix;
 use crate::num::linalg::{Cholesky, product, tr_product};
@@ -27,8 +27,8 @@ use crate::num::linalg::{Cholesky, product, tr_product};
 /// Even light, over the mean light, whose effect is told.
 const PERCENT: f64 = 0.01;
 
-/// SᵀS, AᵀS and B⊥ᵀS, g, the squares of S before other light took any, and the mean of the light
-/// that is found, W.
+/// SᵀS, AᵀS and B⊥ᵀS, g, the squares of S before other light took any, the mean of the light that
+/// is found, W, and how neighbours hang together.
 pub(super) struct Sums {
     own: Matrix,
     light: Matrix,
@@ -36,6 +36,7 @@ pub(super) struct Sums {
     score: Matrix,
     whole: Vec<f64>,
     mean: f64,
+    neighbours: Neighbours,
 }
 
 /// What 1 % of the mean light does that every entry has and the model leaves out.
@@ -56,9 +57,8 @@ impl Sums {
 }
 
 impl Problem<'_> {
-    /// Each kind of pattern against what is left of photographs whose noise is stated, is each
-    /// entry's own, and is not along cosines; nothing where light that all frames share is
-    /// estimated.
+    /// Each kind of pattern against what is left of photographs whose noise is each entry's own and
+    /// not along cosines; where it is not stated, in units of how it varies. Nothing where light that all frames share is estimated.
     pub(super) fn light_left_out(
         &self,
         best: &State,
@@ -66,12 +66,15 @@ impl Problem<'_> {
         information: &Cholesky,
     ) -> Vec<LightLeftOut> {
         let known = self.photographs.certainty;
-        let is_own = known.errors == Errors::Independent && self.photographs.stderr.is_some();
+        let is_own = known.errors == Errors::Independent;
         if !is_own || self.cosines.is_some() || self.common.is_some() {
             return Vec::new();
         }
-        let f = sums.information(best, information);
-        let left = (&f, &sums.score, &sums.whole[..]);
+        let unit = sums.neighbours.inflation();
+        let unit = self.photographs.stderr.map_or(unit, |_| 1.0);
+        let f = sums.information(best, information) / unit;
+        let whole: Vec<f64> = sums.whole.iter().map(|own| own / unit).collect();
+        let left = (&f, &(&sums.score / unit), &whole[..]);
         LightLeftOut::of(left, |chi2, dof| known.by_noise(chi2, dof))
     }
 
@@ -109,6 +112,7 @@ impl Problem<'_> {
             score: Matrix::zeros(all, 1),
             whole: vec![0.0; all],
             mean: 0.0,
+            neighbours: Neighbours::new(all, best.value.count),
         };
         let frames = b.len() as f64;
         for (l, own) in b.iter().enumerate() {
@@ -127,10 +131,9 @@ impl Problem<'_> {
                 sums.own += tr_product(&s, &s);
                 sums.light += tr_product(&a, &s);
                 sums.geometry += tr_product(&b, &s);
-                sums.score += tr_product(
-                    &s,
-                    &(&y - &a * Matrix::from_column_slice(n, 1, rho.as_slice())),
-                );
+                let left = &y - &a * Matrix::from_column_slice(n, 1, rho.as_slice());
+                sums.score += tr_product(&s, &left);
+                sums.neighbours.add(&s, &left);
             }
         }
         Ok(sums)

@@ -3,6 +3,7 @@
 use crate::lab::certainty::{FOLLOWS_ENTRIES, fits_better, neighbours_share, times_too_small};
 use crate::lab::fit::{Fit, Judged};
 use crate::lab::pooled::ENOUGH_REPLICATES;
+use crate::lab::with_light::goes_with_light;
 use crate::num::digits::{figure, significant};
 use crate::num::statistics::median;
 use crate::recovery::{Choice, Method, Recovered};
@@ -80,6 +81,15 @@ pub(super) fn between_neighbours(judged: &Judged) -> Option<String> {
     let fit = judged.fit.as_ref().filter(is_noise)?;
     let errors = "errors, bands and probabilities of the picture take each entry for its own: they are TOO SMALL";
     Some(neighbours_share(fit.neighbours?, errors))
+}
+
+/// Errors that do not go with the light as the noise does: of all together χ² may be right.
+pub(super) fn with_light(judged: &Judged) -> Option<String> {
+    let fit = judged.fit.as_ref().filter(|fit| fit.fits)?;
+    let told = goes_with_light(fit.with_light?);
+    Some(format!(
+        "{told}. So the errors of the picture are not right"
+    ))
 }
 
 /// Photographs closer to the picture than their errors let them be.

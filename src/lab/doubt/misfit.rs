@@ -1,6 +1,6 @@
 //! Photographs that a picture, or any picture, does not explain.
 
-use crate::lab::fit::{Attainable, Fit, Judged, ROUGH};
+use crate::lab::fit::{Attainable, Fit, Judged};
 use crate::num::digits::{figure, significant};
 use crate::recovery::{Method, Recovered, Weighting};
 
@@ -72,15 +72,6 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
              recover with joint to tell"
         ));
     };
-    if let Weighting::Separable { misfit } = found.weighting
-        && misfit > ROUGH
-    {
-        return Some(format!(
-            "{own}, and others explain them ({}): the errors are no product of one by pixel and one by \
-             spot, which the weights are. Use --weighting entries",
-            told(&best.possible)
-        ));
-    }
     if found.method.is_joint() && found.weighting == Weighting::Unweighted {
         return Some(format!(
             "{own}, and others explain them ({}): all entries weigh alike, whatever their noise. Leave --weighting \

@@ -13,7 +13,7 @@ use crate::lab::{Certainty, Noise, RecoveredObject, Work, recover_objects};
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
 use crate::num::control::Control;
-use crate::recovery::{Nuisance, Options, Problem, RecoveryError, recover};
+use crate::recovery::{Nuisance, Options, Problem, RecoveryError};
 
 /// Every method that 16 elements and 14 spots allow, with what it makes of the photographs: a
 /// refusal, or its first surface.
@@ -175,7 +175,8 @@ fn a_search_that_finds_no_possible_picture_is_told() {
     let (c, d) = (side(4, 2), side(2, 3));
     let phi = &c * &d;
     let problem = Problem::new(&phi, &c, &d, None).unwrap();
-    let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
+    let found = crate::recovery::recover(Method::JointUnbounded, &problem, &Options::default());
+    let found = found.unwrap();
     for (none_possible, told) in [(None, false), (Some(RecoveryError::TakenUp), true)] {
         let judged = Judged {
             none_possible,

@@ -4,9 +4,7 @@ use super::{Certainty, Fit, Known, MOST_ELEMENTS, Residuals, fit};
 use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::fisher_sf;
-use crate::recovery::{
-    Method, Options, Problem, Recovered, RecoveryError, WeightRule, Weighting, recover,
-};
+use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, WeightRule, recover};
 
 /// What the best picture of all can do: whether photographs and matrices belong together, whatever
 /// the method.
@@ -40,35 +38,15 @@ impl Attainable {
             weighting: WeightRule::Noise,
             ..*options
         };
-        let by_noise = |method: Method| -> Result<Option<(Fit, Weighting)>, RecoveryError> {
-            let fitted = |found: &Recovered| Some((fit(problem, noise, found)?, found.weighting));
+        let by = |method: Method| -> Result<Option<Fit>, RecoveryError> {
             let known = found.iter().find(|f| f.method == method);
             if let Some(known) = known.filter(|_| weighted) {
-                return Ok(fitted(known));
+                return Ok(fit(problem, noise, known));
             }
             if problem.elements() > MOST_ELEMENTS {
                 return Ok(None);
             }
-            Ok(fitted(&recover(method, problem, &options)?))
-        };
-        // Weights by pixel and by spot leave more over than the best picture does where errors are
-        // no product of such.
-        let by = |method: Method| -> Result<Option<Fit>, RecoveryError> {
-            let Some((found, weighting)) = by_noise(method)? else {
-                return Ok(None);
-            };
-            let rough = matches!(weighting, Weighting::Separable { misfit } if misfit > ROUGH);
-            if found.fits || !rough || problem.elements() > MOST_ELEMENTS {
-                return Ok(Some(found));
-            }
-            let options = Options {
-                weighting: WeightRule::Entries,
-                ..options
-            };
-            let by_entries = recover(method, problem, &options).ok();
-            let by_entries = by_entries.and_then(|own| fit(problem, noise, &own));
-            let nearer = by_entries.filter(|own| own.p > found.p);
-            Ok(Some(nearer.unwrap_or(found)))
+            Ok(fit(problem, noise, &recover(method, problem, &options)?))
         };
         let scale = |f: &&Recovered| f.nuisance.as_ref().and_then(|n| n.scale);
         let free = found.iter().any(|f| scale(f).is_some());
@@ -96,10 +74,6 @@ impl Attainable {
         Ok(by(Method::Joint)?.map(of))
     }
 }
-
-/// Root mean square of ln σ about a term by pixel and one by spot, above which weights of that form
-/// are not those of the noise; σ of 32 replicates scatters by 0.13.
-pub(in crate::lab) const ROUGH: f64 = 0.25;
 
 /// What any numbers leave over of photographs whose noise is not known: of `joint-unbounded`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,6 +139,7 @@ impl LeftOver {
             outlier: None,
             pooled: None,
             neighbours: None,
+            with_light: None,
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::lab::agreement::freedom_of_rows;
 use crate::lab::certainty::{Certainty, Errors, correlated};
 use crate::lab::counted::Counted;
 use crate::lab::evidence::FIT_LEVEL;
+use crate::lab::with_light::WithLight;
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, sidak_threshold};
 
@@ -43,6 +44,8 @@ pub struct Residuals {
     /// z of the last row, and Σ z z′ over rows that follow each other: pixels side by side.
     last: Vec<f64>,
     beside: f64,
+    /// How z² goes with ln of the light.
+    with_light: WithLight,
 }
 
 impl Residuals {
@@ -69,6 +72,7 @@ impl Residuals {
                 let signed = square.sqrt().copysign(t);
                 self.beside += signed * self.last[l];
                 self.last[l] = signed;
+                self.with_light.add(seen[at], square);
                 sum += square;
                 if far > FAR && self.far.len() <= MOST_FAR {
                     self.far.push((self.sums.len(), l, far, square));
@@ -99,6 +103,8 @@ impl Residuals {
             Errors::Everywhere => 1.0,
         };
         let p = chi_square_sf(chi2_per_dof * dof, dof);
+        let are_own = certainty.errors == Errors::Independent;
+        let with_light = self.with_light.correlation().filter(|_| are_own);
         Some(Fit {
             chi2_per_dof,
             dof,
@@ -110,10 +116,10 @@ impl Residuals {
             within_integration: None,
             outlier: self
                 .outlier(left, certainty)
-                .filter(|_| certainty.errors == Errors::Independent),
+                .filter(|_| are_own && with_light.is_none()),
             pooled: certainty.pooled(),
-            neighbours: correlated(self.beside, squares, entries)
-                .filter(|_| certainty.errors == Errors::Independent),
+            neighbours: correlated(self.beside, squares, entries).filter(|_| are_own),
+            with_light,
         })
     }
 }

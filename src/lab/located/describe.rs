@@ -35,13 +35,10 @@ impl Located {
         fit.is_some_and(|fit| fit.fits && !fit.is_open())
     }
 
-    /// Light that would explain most of what is more than noise; all of it where none is stated.
+    /// Light that would explain most of what is more than noise.
     fn left_out_light(&self) -> impl Iterator<Item = &LightLeftOut> {
-        let misfit = match self.refuted() {
-            Some(fit) => (fit.chi2_per_dof - 1.0) * fit.dof,
-            None if self.is_noise_known => 0.0,
-            None => self.entries as f64,
-        };
+        let refuted = self.refuted();
+        let misfit = refuted.map_or(0.0, |fit| (fit.chi2_per_dof - 1.0) * fit.dof);
         LightLeftOut::likely(&self.light_left_out, misfit)
     }
 

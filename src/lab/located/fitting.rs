@@ -64,6 +64,7 @@ impl LocatedPlan {
             outlier: None,
             pooled: known.pooled(),
             neighbours: None,
+            with_light: None,
         }))
     }
 }

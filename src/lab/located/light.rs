@@ -15,7 +15,7 @@ use super::likelihood::Spectrum;
 use super::place::{Lengths, frames_of, likeliest_length};
 use crate::lab::certainty::Errors;
 use crate::lab::error::LabError;
-use crate::lab::light_left_out::LightLeftOut;
+use crate::lab::light_left_out::{LightLeftOut, Neighbours};
 use crate::lab::misplaced::Misplaced;
 use crate::lab::over_view::{PATTERNS, over_view};
 use crate::matrix::Matrix;
@@ -25,8 +25,8 @@ use crate::scene::Scene;
 
 impl LocatedPlan {
     /// Each kind of pattern at `size` against what is left of photographs whose errors are each
-    /// entry's own, and not less the means of the frames; in units of what is left where no noise
-    /// is stated. Sizes so far off give ∂A/∂t: nothing is said where the scene does not allow them.
+    /// entry's own, and not less the means of the frames; in units of what is left, and of how
+    /// its noise varies, where none is stated. Sizes so far off give ∂A/∂t: nothing is said where the scene does not allow them.
     pub(super) fn light_left_out(
         &self,
         (scene, altered): (&Scene, &Misplaced),
@@ -81,6 +81,7 @@ fn light(
     let mut of_picture = Matrix::zeros(rho.len(), PATTERNS + 1);
     let mut score = Matrix::zeros(PATTERNS + 1, 1);
     let mut whole = [0.0; PATTERNS];
+    let mut neighbours = Neighbours::new(PATTERNS, of.counted() as f64);
     for l in 0..of.phi.ncols() {
         let shape = light.columns(l, 1).into_owned();
         let s = over_view(&shape, columns);
@@ -92,9 +93,11 @@ fn light(
         s.set_column(PATTERNS, &moved.column(l));
         let white = of.whitening(l)?;
         let s = white.apply(&s);
+        let left = white.apply(&(of.phi.columns(l, 1) - shape));
+        neighbours.add(&s.columns(0, PATTERNS).into_owned(), &left);
         f += tr_product(&s, &s);
         of_picture += tr_product(&white.apply(&terms.frame(l, rho.len())), &s);
-        score += tr_product(&s, &white.apply(&(of.phi.columns(l, 1) - shape)));
+        score += tr_product(&s, &left);
     }
     let towards = tr_product(&picture.spread(fit.lambda), &of_picture);
     f -= tr_product(&towards, &towards);
@@ -102,7 +105,8 @@ fn light(
     let place = &of_place / f[(PATTERNS, PATTERNS)].max(f64::MIN_POSITIVE);
     f -= product(&of_place, &place.transpose());
     score -= &place * score[PATTERNS];
-    let unit = of.stderr.map_or(fit.noise * fit.noise, |_| 1.0);
+    let unit = fit.noise * fit.noise * neighbours.inflation();
+    let unit = of.stderr.map_or(unit, |_| 1.0);
     let left = (&(f / unit), &(score / unit), &whole.map(|x| x / unit)[..]);
     Ok(LightLeftOut::of(left, |chi2, dof| {
         of.certainty.by_noise(chi2, dof)

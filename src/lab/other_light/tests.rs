@@ -210,6 +210,7 @@ fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
         of: &|_| Some(d.clone()),
         moved: &|_, _| None,
         picture: None,
+        bends: false,
         are_named: true,
     };
     let adjusted = Evidence {

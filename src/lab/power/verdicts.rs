@@ -60,6 +60,7 @@ pub(super) fn verdicts(
             of: &|index| models.slopes[index].clone(),
             moved: &|_, _| None,
             picture: None,
+            bends: false,
             are_named: false,
         },
     };

@@ -34,6 +34,9 @@ pub struct Derivatives<'a> {
     /// Φ(θ) − Φ(0) and ∂Φ/∂θ at θ of a parameter, W and W per unit; `None` where only the
     /// derivative at 0 is known.
     pub moved: &'a (dyn Fn(usize, f64) -> Option<[Matrix; 2]> + Sync),
+    /// Whether light bends where the scene moves: an albedo of the walls steps, and is met by the
+    /// edges of pixels.
+    pub bends: bool,
     /// Light of the elements, where the picture is not known.
     pub picture: Option<&'a (dyn Fn() -> Option<Arc<ElementLight>> + Sync)>,
     /// Whether causes are looked for, and what χ² each leaves: that takes many times as long as the
@@ -58,7 +61,7 @@ pub struct Deviation {
     pub z: f64,
     /// Probability of one as large among its family (Šidák).
     pub p: f64,
-    /// Smallest deviation that the score test rejects 95 times in 100.
+    /// Smallest deviation that the score test rejects 95 times in 100, whatever its sign.
     pub detectable: f64,
     /// The largest that a scene can have, if there is one.
     #[serde(default)]

@@ -14,8 +14,10 @@
 //! first ([`super::elimination`]). Of more than 512 elements, where the noise is known, the normal
 //! equations are summed with each entry's own weight, and reduced to the rows that the noise leaves
 //! ([`super::gram`]); with glare patterns there is no such product, and the rows are stacked
-//! instead ([`super::stacked`]), each with its own weight. So are those of a single photograph of
-//! many pixels, which is a column of its own and nothing to compress: no copy of C is held.
+//! instead ([`super::stacked`]), each with its own weight. Both are done of fewer elements too,
+//! where the noise is no product of a factor by pixel and one by spot. Stacked are those of a
+//! single photograph of many pixels as well, which is a column of its own and nothing to compress:
+//! no copy of C is held.
 
 use std::sync::{Arc, OnceLock};
 
@@ -39,6 +41,10 @@ const MOST_ELEMENTS: usize = 8192;
 /// Elements up to which the operator is compressed to rounding, whatever the noise; of more, where
 /// the noise is known, to what it leaves.
 const FEW: usize = 512;
+
+/// Multiplications of a QR of all rows, at most, where weights by pixel and by spot are those of
+/// the noise, and where they are not.
+const MOST_STACKED: [f64; 2] = [1e9, 1e11];
 
 /// Pixels from which on a QR blurs the singular values, by 4e-14 σ₁ (measured), less than the
 /// entries' own rounding, p·eps σ₁, at which they are cut.
@@ -159,9 +165,14 @@ impl Operator {
         let (pixels, spots) = problem.phi.shape();
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
+        let rough = weights.are_rough();
         let by_entry = elements > FEW || options.weighting == WeightRule::Entries;
         let holed = problem.nuisance.left_out.is_some() || problem.soft.is_some();
-        let by_entry = known.is_some() && (by_entry || holed);
+        let by_entry = known.is_some() && (by_entry || holed || rough);
+        // Where the noise is less than the rounding of the normal equations.
+        let work = (pixels * spots * elements * elements) as f64;
+        let ties = problem.nuisance.background && !rough;
+        let all_rows = by_entry && !ties && work <= MOST_STACKED[usize::from(rough)];
         let root = |p: usize, l: usize| weights.root(problem, known, p, l);
         let reduced = if by_entry {
             gram::reduced(problem, root)?
@@ -170,7 +181,11 @@ impl Operator {
         };
         let by_rows = match reduced {
             Some(stacked) => Some((stacked.triangle.r.nrows(), stacked)),
-            None if problem.nuisance.glare.is_some() || holed || is_tall(problem, known) => {
+            None if problem.nuisance.glare.is_some()
+                || holed
+                || all_rows
+                || is_tall(problem, known) =>
+            {
                 Some((pixels * spots, stack(problem, root)?))
             }
             None => None,

@@ -12,7 +12,16 @@ pub(super) struct Weights {
     pub(super) weighting: Weighting,
 }
 
+/// Root mean square of ln σ about a term by pixel and one by spot, above which weights of that form
+/// are not those of the noise; σ of 32 replicates scatters by 0.13.
+const ROUGH: f64 = 0.25;
+
 impl Weights {
+    /// Whether they are not those of the noise.
+    pub(super) fn are_rough(&self) -> bool {
+        matches!(self.weighting, Weighting::Separable { misfit } if misfit > ROUGH)
+    }
+
     /// 1/σ\[p,l\], where σ is known and not zero, else the separable fit; 0 of entries that do not
     /// count.
     pub(super) fn root(

@@ -45,8 +45,8 @@ fn an_element_that_is_not_seen_is_told() {
 }
 
 /// Right photographs whose errors are no product of one by pixel and one by spot: no method says
-/// that nothing explains them, and one whose weights are of that form says what helps. Their errors
-/// estimated from few replicates, those of the picture are told to be too small.
+/// that nothing explains them, and joint methods do. Their errors estimated from few replicates,
+/// those of the picture are told to be too small.
 #[test]
 fn errors_of_any_form_refute_nothing() {
     let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
@@ -55,14 +55,13 @@ fn errors_of_any_form_refute_nothing() {
         let mut normal = normal(seed);
         let stderr = phi.map(|x| 0.01 * x * libm::exp(1.5 * normal()[0]));
         let noisy = phi.zip_map(&stderr, |x, s| x + s * normal()[0]);
-        let mut told = 0;
         for (method, outcome) in by_every_method(&model, &noisy, Some(&stderr)) {
             let Ok(object) = outcome else { continue };
             assert!(!object.contradicted(), "{method}: {:?}", object.warnings);
-            let helps = object.warnings.iter();
-            told += usize::from(helps.filter(|w| w.contains("--weighting entries")).count() > 0);
+            let fits = object.fit.is_some_and(|fit| fit.fits);
+            let any = [Method::JointUnbounded, Method::Joint, Method::Nnls].contains(&method);
+            assert!(fits || !any, "{seed} {method}: {:?}", object.warnings);
         }
-        assert!(told > 0, "{seed}");
     }
     for (replicates, few) in [(Some(5), true), (Some(32), false), (None, false)] {
         let right = Photographs::relative(&phi, 1e-2, 5);
@@ -92,4 +91,56 @@ fn how_alike_elements_are_is_told_or_not() {
         let told = warnings.iter().any(|w| w.contains("how alike"));
         assert_eq!(told, untold, "{level}: {warnings:?}");
     }
+}
+
+/// Elements that no bound touches leave nothing of the reduced objective, and no search ended early;
+/// photographs of unknown noise, 40 pixels and six elements.
+#[test]
+fn a_minimum_that_no_bound_touches_is_no_early_end() {
+    let camera = Matrix::from_fn(40, 6, |p, j| 1.0 + libm::sin((p * (2 * j + 3)) as f64));
+    let model = MatrixModel::of_sides(camera, Matrix::from_element(6, 1, 1.0), [6, 1]).unwrap();
+    let mut normal = normal(2);
+    let exact = &model.camera_side * Matrix::from_fn(6, 1, |j, _| 0.2 + 0.1 * j as f64);
+    let phi = exact.map(|x| x + 1e-3 * normal()[0]);
+    for method in [Method::Joint, Method::Nnls] {
+        let warnings = warnings(&model, &phi, method);
+        let early = warnings.iter().any(|w| w.contains("ended before"));
+        assert!(!early, "{method}: {warnings:?}");
+    }
+}
+
+/// Noise that is a share of each entry, stated as one size for all: what is left grows with the
+/// light, and no entry is taken for a hot pixel; of errors that are right nothing is said. 1600
+/// pixels, one photograph.
+#[test]
+fn errors_that_do_not_go_with_the_light_are_told() {
+    let camera = Matrix::from_fn(1600, 4, |p, j| {
+        let own = 1.0 + 0.5 * libm::sin((p * (j + 2)) as f64);
+        libm::exp(0.7 * libm::sin(2.7 * p as f64)) * own
+    });
+    let model = MatrixModel::of_sides(camera, Matrix::from_element(4, 1, 1.0), [4, 1]).unwrap();
+    let exact = &model.camera_side * Matrix::from_row_slice(4, 1, &[0.3, 0.7, 0.6, 0.5]);
+    let own = &exact * 0.01;
+    let rms = (own.norm_squared() / 1600.0).sqrt();
+    let alike = exact.map(|_| rms);
+    let mut grows = 0;
+    for seed in 0..20 {
+        let mut normal = normal(seed);
+        let phi = exact.zip_map(&own, |x, s| x + s * normal()[0]);
+        let told = |stderr: &Matrix| {
+            let method = (Method::JointUnbounded, &Options::default());
+            let object = recovered(&model, &phi, (stderr, Certainty::STATED), method);
+            let told = |words: &str| object.warnings.iter().any(|w| w.contains(words));
+            assert!(
+                !told("a hot or dead pixel"),
+                "{seed}: {:?}",
+                object.warnings
+            );
+            told("GROWS with the light")
+        };
+        grows += u32::from(told(&alike));
+        assert!(!told(&own), "{seed}");
+    }
+    // Of one in a hundred χ² is refuted too, which is told instead.
+    assert!(grows >= 18, "{grows}");
 }

