@@ -11,11 +11,12 @@
 //! others are fitted ([`left_out`]), so that what the model lacks counts once a frame or block
 //! (Huber 1967; Liang and Zeger 1986). Where the likelihood itself, the others following, falls
 //! by ½ farther out, that is the error, and so is what priors of the picture say that the
-//! photographs do not exclude ([`other_pictures`]). The picture's own covariance is P + (RX) cov
-//! θ (RX)ᵀ. What a picture of twice as many elements along each side would move is an error too
-//! where the photographs ask for it, and so is what the next rule of integration would
-//! ([`rule`]). All parameters together are held against what was known of them ([`beforehand`]),
-//! and what is left over against light that the model leaves out ([`light_left_out`]).
+//! photographs do not exclude ([`other_pictures`]). The picture and its covariance are those over
+//! all priors by their evidence, the geometry's share included ([`averaged`]). What a picture of
+//! twice as many elements along each side would move is an error too where the photographs ask for
+//! it, and so is what the next rule of integration would ([`rule`]). All parameters together are
+//! held against what was known of them ([`beforehand`]), and what is left over against light that
+//! the model leaves out ([`light_left_out`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -48,6 +49,7 @@
 //! (`tests/physics/calibrated_past.rs`). Where the plate cuts off the beam of a spot without a size
 //! its place has no slope, and the search may not end.
 
+mod averaged;
 mod beforehand;
 mod brightest;
 mod calibration;

@@ -12,9 +12,10 @@ use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
 use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
-    DETERMINED, HALF, alike_untold, between_neighbours, by_entries, few_replicates, integrated,
-    overstated, shared, too_bright, undetermined, uneven, unseen, with_light,
+    DETERMINED, HALF, between_neighbours, by_entries, few_replicates, integrated, overstated,
+    shared, too_bright, undetermined, unseen, with_light,
 };
+pub(super) use errors::{alike_untold, uneven};
 use misfit::{misfit, none_possible, outlier};
 
 /// More than this share of the elements is most of them.

@@ -129,9 +129,9 @@ pub struct Calibration {
     pub left: f64,
     /// Estimated scale of all light; 1 where it is known.
     pub scale: f64,
-    /// τ of the prior of pictures.
+    /// τ of the likeliest prior of pictures, by which the geometry was found.
     pub spread: f64,
-    /// ℓ, in the scene's unit; 0 for elements that know nothing of each other.
+    /// ℓ of it, in the scene's unit; 0 for elements that know nothing of each other.
     pub length: f64,
     /// The best start's way through the noises.
     pub stages: Vec<Stage>,
@@ -139,12 +139,15 @@ pub struct Calibration {
     pub is_settled: bool,
     /// The starts.
     pub starts: Starts,
-    /// The picture, errors of the geometry included.
+    /// The picture, the mean over all priors by their evidence, as of `joint-gp` by this geometry;
+    /// errors of the geometry included.
     pub grids: Vec<Grid>,
     /// Its standard errors with the geometry given, in the order of the grids.
     pub stderr_given: Vec<f64>,
     /// Directions of the picture that the photographs determine.
     pub directions: f64,
+    /// What speaks against believing the errors of the picture, each with its cure.
+    pub picture_warnings: Vec<String>,
     /// Correlation with the scene's own picture and MTF raw, where that is known.
     pub correlation: Option<f64>,
     /// The same.

@@ -273,6 +273,8 @@ impl Calibration {
         notes.extend(self.impossible());
         notes.push(self.elements());
         notes.extend([self.searched(), self.picture()]);
+        let warnings = self.picture_warnings.iter();
+        notes.extend(warnings.map(|warning| format!("Beware, of the picture: {warning}.")));
         notes.extend(self.beyond());
         notes.extend(self.light_beyond());
         notes.extend(self.even_light());

@@ -78,6 +78,7 @@ impl CalibrationPlan {
         let light_left_out = problem.light_left_out(best, &sums, &information);
         let even_light = problem.even_light(best, &sums, &information);
         let brightest = problem.brightest(best, &light)?;
+        let picture = problem.averaged((best, model), of, control)?;
         drop(columns);
         let scene = problem.geometry.scene;
         let names = self.names(problem);
@@ -138,10 +139,9 @@ impl CalibrationPlan {
                 .count(),
         };
         let scale = best.prior.scale;
-        let rho = &best.value.rho / scale;
-        let given = best.slope.covariance.diagonal() / (scale * scale);
-        let moved = &best.slope.shift * &whole * best.slope.shift.transpose();
-        let both = &given + moved.diagonal() / (scale * scale);
+        let rho = &picture.rho;
+        let moved = &picture.shift * &whole * picture.shift.transpose();
+        let both = &picture.given + moved.diagonal();
         let grids = model.grids.iter().map(|g| Grid {
             surface: g.surface.clone(),
             count: g.count,
@@ -191,8 +191,9 @@ impl CalibrationPlan {
             is_settled: best.is_settled,
             starts,
             grids: grids.collect(),
-            stderr_given: given.iter().map(|x| x.max(0.0).sqrt()).collect(),
-            directions: best.value.freedom,
+            stderr_given: picture.given.iter().map(|x| x.sqrt()).collect(),
+            directions: picture.directions,
+            picture_warnings: picture.warnings,
             correlation: truth.and_then(|t| correlation(rho.as_slice(), t)),
             mtf_raw: truth.and_then(|t| mtf_raw(rho.as_slice(), t)),
             scene_sha256: digest_of(toml.as_bytes()),

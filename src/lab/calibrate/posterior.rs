@@ -319,6 +319,13 @@ pub(super) struct Columns {
     occam: DVector<f64>,
 }
 
+impl Columns {
+    /// AᵀB of all frames, elements × unknowns.
+    pub(super) fn side(all: &[Self]) -> Matrix {
+        all.iter().map(|own| &own.side).sum()
+    }
+}
+
 /// B⊥ᵀB⊥ and B⊥ᵀ(y − Aρ̂) of a frame.
 struct Left {
     square: Matrix,

@@ -1,5 +1,6 @@
 //! The likelihood against a dense normal distribution, its slope against differences.
 
+mod averaged;
 mod beforehand;
 mod common;
 mod errors;

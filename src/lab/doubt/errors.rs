@@ -184,7 +184,7 @@ pub(super) fn undetermined(found: &Recovered, judged: &Judged) -> Option<String>
 }
 
 /// Standard errors of a picture that is taken for one reflectance throughout.
-pub(super) fn uneven(found: &Recovered) -> Option<String> {
+pub(in crate::lab) fn uneven(found: &Recovered) -> Option<String> {
     let Choice::Averaged {
         if_uneven: Some([p, times]),
         ..
@@ -204,7 +204,7 @@ pub(super) fn uneven(found: &Recovered) -> Option<String> {
 
 /// Standard errors that take neighbours to be as alike as in most pictures, where the photographs
 /// do not say how alike they are.
-pub(super) fn alike_untold(found: &Recovered, judged: &Judged) -> Option<String> {
+pub(in crate::lab) fn alike_untold(found: &Recovered, judged: &Judged) -> Option<String> {
     let Choice::Averaged {
         if_unalike: Some(times),
         ..

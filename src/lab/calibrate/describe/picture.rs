@@ -90,10 +90,13 @@ impl Calibration {
             ),
         };
         format!(
-            "The picture is the mean of all that fit, with spread {} and {length}, not bounded; {} \
-             of its directions are determined{taken}. Its errors include those of the geometry.{truth}{scale}",
-            figure(self.spread, 2),
-            figure(self.directions, 3)
+            "The picture is the mean of all that fit by this geometry, however much and over whatever length they \
+             vary, as likely as the photographs make them (`joint-gp`), not bounded; {} of its directions are \
+             determined{taken}. Its errors include those of the geometry and hold for such pictures: `phicam \
+             recover` with the calibrated scene compares other assumptions. The geometry was found by the \
+             likeliest: pictures of spread {} and {length}.{truth}{scale}",
+            figure(self.directions, 3),
+            figure(self.spread, 2)
         )
     }
 }
