@@ -3310,6 +3310,33 @@ BREAKS = [
         "lab::doubt::tests::an_element_without_light_is_told_by_every_method",
         42,
     ),
+    Break(
+        "Errors of a picture hold over all priors",
+        "src/lab/calibrate/averaged.rs",
+        "given: errors.component_mul(&errors),",
+        "given: best.slope.covariance.diagonal(),",
+        "lib",
+        "lab::calibrate::tests::averaged::errors_of_the_picture_hold_whatever_its_prior",
+        42,
+    ),
+    Break(
+        "The picture of a calibration is that of the process",
+        "src/lab/calibrate/averaged.rs",
+        "rho: reflectance,",
+        "rho: best.value.rho.clone(),",
+        "lib",
+        "lab::calibrate::tests::averaged::the_picture_is_that_of_the_process_over_all_priors",
+        43,
+    ),
+    Break(
+        "That neighbours may not be alike is told of a calibration",
+        "src/lab/calibrate/averaged.rs",
+        "warnings: warnings.into_iter().flatten().collect(),",
+        "warnings: Vec::new(),",
+        "lib",
+        "lab::calibrate::tests::averaged::that_neighbours_may_not_be_alike_is_told",
+        44,
+    ),
 ]
 
 

@@ -154,8 +154,8 @@ pub(super) fn share(significance: f64, deviations: bool) -> f64 {
 ///
 /// Entries whose standard error is 0 (light that never varies) are compared to rounding, and those
 /// that are dark in both besides are left out. Where every entry is, there is no evidence and no
-/// agreement; nor where what was fitted first has as many unknowns as there are entries, nor where nothing
-/// speaks against a model of which half may be its integration.
+/// agreement; nor where what was fitted first has as many unknowns as there are entries, nor where
+/// nothing speaks against a model of which half may be its integration.
 pub fn agree(
     evidence: Evidence<'_>,
     test: Test,

@@ -158,8 +158,9 @@ mod tests {
 
     /// 40 frames of 32 × 32 pixels: what is even over them is known to 1 of noise of each pixel
     /// alone, ((1 + r)/(1 − r))² of what hangs together by r from column to column and row to row,
-    /// and, of noise that goes with the pattern 1 … 3 evenly, Σ s⁴/(Σ s²)² · n times; light that the
-    /// pattern itself takes counts for nothing. Variances of sums over 40 frames scatter by 0.22.
+    /// and, of noise that goes with the pattern 1 … 3 evenly, Σ s⁴/(Σ s²)² · n times; light that
+    /// the pattern itself takes counts for nothing. Variances of sums over 40 frames scatter by
+    /// 0.22.
     #[test]
     fn what_noise_says_of_patterns_varies_as_stated() {
         let side = 32;

@@ -58,7 +58,8 @@ impl Sums {
 
 impl Problem<'_> {
     /// Each kind of pattern against what is left of photographs whose noise is each entry's own and
-    /// not along cosines; where it is not stated, in units of how it varies. Nothing where light that all frames share is estimated.
+    /// not along cosines; where it is not stated, in units of how it varies. Nothing where light
+    /// that all frames share is estimated.
     pub(super) fn light_left_out(
         &self,
         best: &State,

@@ -26,7 +26,8 @@ use crate::scene::Scene;
 impl LocatedPlan {
     /// Each kind of pattern at `size` against what is left of photographs whose errors are each
     /// entry's own, and not less the means of the frames; in units of what is left, and of how
-    /// its noise varies, where none is stated. Sizes so far off give ∂A/∂t: nothing is said where the scene does not allow them.
+    /// its noise varies, where none is stated. Sizes so far off give ∂A/∂t: nothing is said where
+    /// the scene does not allow them.
     pub(super) fn light_left_out(
         &self,
         (scene, altered): (&Scene, &Misplaced),

@@ -93,8 +93,8 @@ fn how_alike_elements_are_is_told_or_not() {
     }
 }
 
-/// Elements that no bound touches leave nothing of the reduced objective, and no search ended early;
-/// photographs of unknown noise, 40 pixels and six elements.
+/// Elements that no bound touches leave nothing of the reduced objective, and no search ended
+/// early; photographs of unknown noise, 40 pixels and six elements.
 #[test]
 fn a_minimum_that_no_bound_touches_is_no_early_end() {
     let camera = Matrix::from_fn(40, 6, |p, j| 1.0 + libm::sin((p * (2 * j + 3)) as f64));
