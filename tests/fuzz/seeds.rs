@@ -274,15 +274,18 @@ fn pictures() -> Vec<Vec<u8>> {
 
 /// The first byte is even for a text and odd for a MERL table, of which no seed is: it has 35 MB.
 fn tables() -> Vec<Vec<u8>> {
-    let mut text = String::from("\0theta_i,theta_o,phi,value\n");
-    for i in [0, 45, 90] {
-        for o in [0, 45, 90] {
-            for phi in [0, 180] {
-                text.push_str(&format!("{i},{o},{phi},0.2\n"));
+    let table = |phis: &[u32]| {
+        let mut text = String::from("\0theta_i,theta_o,phi,value\n");
+        for i in [0, 45, 90] {
+            for o in [0, 45, 90] {
+                for phi in phis {
+                    text.push_str(&format!("{i},{o},{phi},0.2\n"));
+                }
             }
         }
-    }
-    vec![text.into_bytes()]
+        text.into_bytes()
+    };
+    vec![table(&[0, 180]), table(&[0, 90, 180])]
 }
 
 /// A frame of 5 × 3 pixels.
