@@ -125,8 +125,9 @@ impl Agreement {
         told.push(("test", test));
         told.extend(self.overstated().map(|words| ("errors", words)));
         // A model that is wrong leaves more where there is more light.
-        let whole = |_: &f64| self.chi2_p >= share(self.significance, self.score.is_some());
-        let with_light = self.with_light.filter(whole).map(goes_with_light);
+        let passes = self.chi2_p >= share(self.significance, self.score.is_some());
+        let is_noise = passes && !fits_better(self.chi2_per_dof, self.chi2_p);
+        let with_light = self.with_light.filter(|_| is_noise).map(goes_with_light);
         told.extend(with_light.map(|words| ("errors", words)));
         if !self.agrees && self.evidence {
             told.push(("rejected by", self.rejected_by()));

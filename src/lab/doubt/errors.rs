@@ -74,18 +74,23 @@ pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
     })
 }
 
+/// Whether what is left over may be noise of the stated size.
+fn is_noise(fit: &&Fit) -> bool {
+    fit.fits && !fits_better(fit.chi2_per_dof, fit.p)
+}
+
 /// Noise that neighbouring pixels share where it is taken for each one's own: of what is left over
 /// as noise leaves it, not of less.
 pub(super) fn between_neighbours(judged: &Judged) -> Option<String> {
-    let is_noise = |fit: &&Fit| fit.fits && !fits_better(fit.chi2_per_dof, fit.p);
     let fit = judged.fit.as_ref().filter(is_noise)?;
     let errors = "errors, bands and probabilities of the picture take each entry for its own: they are TOO SMALL";
     Some(neighbours_share(fit.neighbours?, errors))
 }
 
-/// Errors that do not go with the light as the noise does: of all together χ² may be right.
+/// Errors that do not go with the light as the noise does, of which χ² of all may be right: of what
+/// is left over as noise leaves it.
 pub(super) fn with_light(judged: &Judged) -> Option<String> {
-    let fit = judged.fit.as_ref().filter(|fit| fit.fits)?;
+    let fit = judged.fit.as_ref().filter(is_noise)?;
     let told = goes_with_light(fit.with_light?);
     Some(format!(
         "{told}. So the errors of the picture are not right"
