@@ -172,7 +172,7 @@ fn either_way(straight: f64, response: impl Fn(f64) -> Option<f64>) -> f64 {
     let mut size = straight;
     for _ in 0..TRIES {
         let [Some(back), Some(forth)] = [-size, size].map(&response) else {
-            return straight;
+            break;
         };
         let least = forth.min(-back);
         if least.is_nan() || least >= ENOUGH * straight {
