@@ -96,7 +96,7 @@ def whole(value: Any, name: str, least: int = 0, most: int = 2**64 - 1) -> int:
 
 def flag(value: Any, name: str) -> bool:
     """True or False; no other value, of which "no" would be true."""
-    if isinstance(value, (bool, np.bool_)):
+    if type(value) in (bool, np.bool_):
         return bool(value)
     raise InputError(f"{name} is {value!r}\n  cure: give True or False")
 
