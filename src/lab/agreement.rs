@@ -99,7 +99,7 @@ pub struct Agreement {
     /// Probability of a |z| as large among all entries (Šidák).
     pub largest_p: f64,
     /// Correlation of z² with ln of the modelled light, where it is more than chance.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub with_light: Option<f64>,
     /// Relative Frobenius difference ‖traced − modelled‖/‖modelled‖.
     pub relative_difference: f64,
