@@ -188,11 +188,13 @@ impl<'a> Residual<'a> {
 
     /// θ of θ·d that is fitted to light that changes by `change`, in all columns.
     pub(super) fn response(&self, d: &Matrix, change: &Matrix) -> f64 {
-        let along = |of: &Matrix| {
-            let terms = d.iter().zip(of).zip(&self.weights);
-            terms.map(|((d, x), w)| w * d * x).sum::<f64>()
-        };
-        along(change) / along(d)
+        self.dot(d, change) / self.dot(d, d)
+    }
+
+    /// Σ w a b.
+    fn dot(&self, a: &Matrix, b: &Matrix) -> f64 {
+        let terms = a.iter().zip(b).zip(&self.weights);
+        terms.map(|((a, b), w)| w * a * b).sum()
     }
 
     /// What factors that are known only roughly add to the variance of Σ w d r: all rows of a frame
@@ -206,13 +208,9 @@ impl<'a> Residual<'a> {
 
     /// z of the deviation `d` after `other` was fitted: of its part that `other` does not have.
     pub(super) fn missed(&self, d: &Matrix, other: &Matrix) -> f64 {
-        let dot = |a: &Matrix, b: &Matrix| {
-            let terms = a.iter().zip(b).zip(&self.weights);
-            terms.map(|((a, b), w)| w * a * b).sum::<f64>()
-        };
-        let own = d - other * (dot(d, other) / dot(other, other));
+        let own = d - other * (self.dot(d, other) / self.dot(other, other));
         // Below a millionth of it is rounding, and what derivatives are off by.
-        if dot(&own, &own) < 1e-6 * dot(d, d) {
+        if self.dot(&own, &own) < 1e-6 * self.dot(d, d) {
             return 0.0;
         }
         self.fit(&own, &(0..d.ncols())).map_or(0.0, |f| f.z())

@@ -8,6 +8,18 @@ const ROWS: usize = 40;
 const COLUMNS: usize = 30;
 const REPLICATES: u32 = 16;
 
+/// Of these alone.
+fn alone<'a>(traced: &'a Matrix, stderr: &'a Matrix, model: &'a Matrix) -> Evidence<'a> {
+    Evidence {
+        traced,
+        stderr,
+        model,
+        bound: None,
+        left_out: None,
+        eliminated: None,
+    }
+}
+
 /// Normal replicates around 1 with standard deviation 0.04, their mean and standard error;
 /// `shared` gives all entries of a row the same noise.
 fn sample(seed: u64, shared: bool) -> (Matrix, Matrix) {
@@ -176,14 +188,7 @@ fn errors_that_are_too_large_are_told() {
             let model = Matrix::from_element(ROWS, COLUMNS, 1.0);
             let told = |times: f64| {
                 let stderr = &stderr * times;
-                let evidence = Evidence {
-                    traced: &traced,
-                    stderr: &stderr,
-                    model: &model,
-                    bound: None,
-                    left_out: None,
-                    eliminated: None,
-                };
+                let evidence = alone(&traced, &stderr, &model);
                 let test = Test {
                     significance: 1e-3,
                     known: Certainty::new(errors, Some(REPLICATES)),
@@ -229,14 +234,7 @@ fn a_deviation_of_what_entries_share_is_told() {
         bends: false,
         are_named: true,
     };
-    let evidence = Evidence {
-        traced: &traced,
-        stderr: &stderr,
-        model: &model,
-        bound: None,
-        left_out: None,
-        eliminated: None,
-    };
+    let evidence = alone(&traced, &stderr, &model);
     let test = Test {
         significance: 1e-3,
         known: Certainty::STATED,
@@ -267,14 +265,7 @@ fn what_is_dark_in_both_is_no_evidence() {
     let of = |dark: usize| {
         let more = |m: &Matrix| m.clone().resize_horizontally(COLUMNS + dark, 0.0);
         let [traced, stderr, model] = [&traced, &stderr, &model].map(more);
-        let evidence = Evidence {
-            traced: &traced,
-            stderr: &stderr,
-            model: &model,
-            bound: None,
-            left_out: None,
-            eliminated: None,
-        };
+        let evidence = alone(&traced, &stderr, &model);
         agree(evidence, test, None).0
     };
     let (all, dark) = (of(0), of(3 * COLUMNS));
@@ -289,14 +280,7 @@ fn what_is_dark_in_both_is_no_evidence() {
 fn what_is_detected_is_so_either_way() {
     let (traced, stderr) = sample(1, false);
     let model = Matrix::from_element(ROWS, COLUMNS, 1.0);
-    let evidence = Evidence {
-        traced: &traced,
-        stderr: &stderr,
-        model: &model,
-        bound: None,
-        left_out: None,
-        eliminated: None,
-    };
+    let evidence = alone(&traced, &stderr, &model);
     let test = Test {
         significance: 1e-3,
         known: Certainty::STATED,
@@ -340,14 +324,7 @@ fn errors_that_do_not_go_with_the_light_are_told() {
         let mut draw = normal(seed);
         let traced = model.zip_map(&own, |x, s| x + s * draw()[0]);
         let told = |stderr: &Matrix| {
-            let evidence = Evidence {
-                traced: &traced,
-                stderr,
-                model: &model,
-                bound: None,
-                left_out: None,
-                eliminated: None,
-            };
+            let evidence = alone(&traced, stderr, &model);
             let test = Test {
                 significance: 1e-3,
                 known: Certainty::STATED,
