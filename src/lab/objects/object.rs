@@ -114,6 +114,7 @@ impl RecoveredObject {
     }
 
     /// What is known of each element beside its reflectance, with its name.
+    #[cfg(feature = "cli")]
     pub(crate) fn beside_it(&self) -> Vec<(&'static str, &Vec<f64>)> {
         let alike = self.alike.as_ref();
         let [mean, error] = [0, 1].map(|k| alike.map(|alike| &alike[k]));

@@ -64,7 +64,8 @@ impl Calibration {
         } else {
             format!(
                 " The scale of all light is {} if the mean of the picture is of the size that its prior takes: \
-                 that is no measurement of the scale, and of reflectances only the ratios are told.",
+                 that is no measurement of the scale, and of reflectances only the ratios are told. Errors are \
+                 those of the light, in units of that scale.",
                 figure(self.scale, 3)
             )
         };

@@ -102,11 +102,15 @@ fn a_minimum_that_no_bound_touches_is_no_early_end() {
     let mut normal = normal(2);
     let exact = &model.camera_side * Matrix::from_fn(6, 1, |j, _| 0.2 + 0.1 * j as f64);
     let phi = exact.map(|x| x + 1e-3 * normal()[0]);
-    for method in [Method::Joint, Method::Nnls] {
-        let warnings = warnings(&model, &phi, method);
-        let early = warnings.iter().any(|w| w.contains("ended before"));
-        assert!(!early, "{method}: {warnings:?}");
-    }
+    let bounded = [Method::Joint, Method::Nnls];
+    let found = by_every_method(&model, &phi, None).into_iter();
+    let warnings: Vec<(Method, Vec<String>)> = found
+        .filter(|(method, _)| bounded.contains(method))
+        .map(|(method, found)| (method, found.unwrap().warnings))
+        .collect();
+    assert_eq!(warnings.len(), bounded.len());
+    let early = |told: &Vec<String>| told.iter().any(|w| w.contains("ended before"));
+    assert!(!warnings.iter().any(|(_, told)| early(told)), "{warnings:?}");
 }
 
 /// Noise that is a share of each entry, stated as one size for all: what is left grows with the
