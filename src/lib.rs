@@ -53,8 +53,8 @@
 //!    7  report/      results → json, svg, png, html: results in, bytes out; page/script: what makes a page answer, in JavaScript
 //!       folder/      what a run leaves on disk: its record, its frames, its matrices
 //!       jobs/        long work in numbered blocks: results of blocks on disk, shards of a plan, going on after a stop
-//!    6  lab/         experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
-//!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
+//!    6  lab/         experiments that compose the floors below, lowest first: uncertainty/ of photographs, comparison/ with the
+//!                    model, recovered/ pictures, geometry/ that is found, studies/, run/, published/
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
 //!       photographs/ files of a real camera → Φcam

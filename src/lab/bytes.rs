@@ -6,8 +6,8 @@ use std::ops::Range;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::error::StudyError;
-use super::study::{Study, outputs};
+use crate::lab::error::StudyError;
+use crate::lab::study::{Study, outputs};
 use crate::transport::Control;
 
 /// How studies are divided and what the outputs of their tasks are: raised whenever a change of

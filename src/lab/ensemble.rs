@@ -1,10 +1,10 @@
 //! Repetitions: draws of the noise with what is recovered from them, and independent renders of one
 //! matrix.
 
-use super::problem::problem;
+use crate::lab::problem::problem;
 use serde::{Deserialize, Serialize};
 
-use super::deviate::normal_deviates;
+use crate::lab::deviate::normal_deviates;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::summation::{mean_and_stderr, tree_sum};

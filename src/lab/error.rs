@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use super::measured::ValidationError;
+use crate::lab::comparison::measured::ValidationError;
 use crate::model::ModelError;
 use crate::num::linalg::LinalgError;
 use crate::num::multiprecision::TooFewDigits;

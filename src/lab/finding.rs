@@ -10,7 +10,7 @@ mod table;
 
 use serde::{Deserialize, Serialize};
 
-pub use super::check::Check;
+pub use crate::lab::check::Check;
 pub use figure::{Axis, Curve, Figure, Mark, Plot, Spacing};
 pub use gallery::{Gallery, Picture, Shades};
 pub use table::{Cell, CellOf, Column, Place, Table};

@@ -1,5 +1,18 @@
 //! Floor 6: studies. Experiments that compose the floors below and return plain results.
 //!
+//! By folders, lowest first; beside them is what all share (`study.rs`: what a study is,
+//! `finding.rs`: what a result is, `problem.rs`: a scene with its model, `ensemble.rs`: draws):
+//!
+//! | folder | what |
+//! | --- | --- |
+//! | `uncertainty` | what is known of the standard errors of photographs |
+//! | `comparison` | photographs against a model: evidence, verdict, the parameters that are off |
+//! | `recovered` | pictures: every method on one Φcam, which to believe, what speaks against it |
+//! | `geometry` | where things are, from the photographs |
+//! | `studies` | one file or folder each; `registry.rs` lists those with a command |
+//! | `run` | what is told of one run |
+//! | `published` | the published study computed again |
+//!
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
 //! * [`validate`]: the same for a scene, the model computed on the way; which parameter of it is
 //!   off ([`Score`]).
@@ -138,155 +151,92 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod agreement;
-mod aim;
-mod answer;
-mod brdf;
-mod budget;
 mod bytes;
-mod calibrate;
-mod certainty;
 mod check;
-mod chosen;
-mod common;
-mod convergence;
-mod counted;
-mod coverage;
-mod derivatives;
+mod comparison;
 mod deviate;
-mod doubt;
-mod eliminated;
 mod ensemble;
 mod error;
-mod evidence;
-mod experiment;
-mod exposure;
 pub mod finding;
-mod fit;
-mod foot_on_wall;
-mod gains;
-mod gallery;
-mod grey;
-mod grounds;
-mod indicator;
-mod inversion;
-mod layout;
-mod light_law;
-mod light_left_out;
-mod likelier;
-mod limit;
-mod located;
-mod loss;
-mod measured;
-mod measures;
-mod misplaced;
-mod noise;
-mod noise_law;
-mod normal;
-mod objects;
-mod occluder;
+mod geometry;
 pub mod options;
-mod other_light;
-mod over_view;
-mod picard;
-#[cfg(test)]
-mod pictures;
-mod pilot;
-mod pooled;
-mod power;
 mod preview;
 mod problem;
 pub mod published;
-mod recoveries;
-mod refined;
-mod registered;
-mod registry;
-mod residual;
-mod results;
+mod recovered;
+mod run;
 #[cfg(test)]
 #[path = "sample_tests.rs"]
 pub(crate) mod sample;
-mod score;
-mod seldom;
-mod sensitivity;
-mod shaded;
-mod smooth;
-mod smooth_noise;
-mod spots;
+mod studies;
 mod study;
-mod subject;
-mod summary;
-mod sweep;
-mod tails;
-mod tolerance;
-mod traced;
-mod trust;
-mod unexplained;
-mod unmodelled;
-mod validation;
-mod verdict;
-mod which_errors;
-mod with_light;
+mod uncertainty;
 
-pub use agreement::{Agreement, Entry, EntryBound, agree};
-pub use aim::{SAMPLES, aimed};
-pub use answer::{Answer, Claim};
-pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
-pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
-pub use calibrate::{
+pub use comparison::agreement::{Agreement, Entry, EntryBound, agree};
+pub use comparison::eliminated::Eliminated;
+pub use comparison::evidence::{Evidence, FIT_LEVEL, Test};
+pub use comparison::gains::{Deviations, Gains};
+pub use comparison::measured::{Measured, ValidationError};
+pub use comparison::score::{Derivatives, Deviation, ElementLight, Parameter, PictureFit, Score};
+pub use comparison::unmodelled::{from_wall_to_wall, unmodelled};
+pub use comparison::validation::{Against, Integration, Validation, validate};
+pub use ensemble::{Estimate, Spread};
+pub use error::{LabError, StudyError};
+pub use geometry::calibrate::{
     Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
     Identified, Profile, Stage, Starts,
 };
-pub use certainty::{Certainty, Errors, PooledFrom};
-pub use chosen::{Beside, Chosen};
-pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
-pub use counted::Counted;
-pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
-pub use eliminated::Eliminated;
-pub use ensemble::{Estimate, Spread};
-pub use error::{LabError, StudyError};
-pub use evidence::{Evidence, FIT_LEVEL, Test};
-pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
-pub use exposure::describe_exposure;
-pub use fit::{Attainable, Fit, Judged, Outlier, Residuals, Rival};
-pub use gains::{Deviations, Gains};
-pub use gallery::{
-    Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
+pub use geometry::light_left_out::LightLeftOut;
+pub use geometry::located::{
+    Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order,
 };
-pub use indicator::{
-    Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
-    NoisyOutcome, NoisyPoint, NoisySummary,
-};
-pub use light_law::LightLaw;
-pub use light_left_out::LightLeftOut;
-pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order};
-pub use measured::{Measured, ValidationError};
-pub use measures::Measures;
-pub use noise::{
-    AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
-    NoiseTasks, Picture, Point, Reach, RenderNoise,
-};
-pub use objects::{
-    Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
-};
-pub use pilot::{Foretold, darkness, foretold};
-pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
 pub use problem::{MOST_INTEGRATED, inverted};
-pub use recoveries::{by_surface, describe_recovery, determined, fits, recovery, warnings};
-pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
-pub use registry::STUDIES;
-pub use results::RunResults;
-pub use score::{Derivatives, Deviation, ElementLight, Parameter, PictureFit, Score};
-pub use smooth::polynomials;
+pub use recovered::chosen::{Beside, Chosen};
+pub use recovered::fit::{Attainable, Fit, Judged, Outlier, Residuals, Rival};
+pub use recovered::gallery::{
+    Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
+};
+pub use recovered::measures::Measures;
+pub use recovered::objects::{
+    Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
+};
+pub use recovered::recoveries::{
+    by_surface, describe_recovery, determined, fits, recovery, warnings,
+};
+pub use recovered::trust::by_trust;
+pub use run::aim::{SAMPLES, aimed};
+pub use run::answer::{Answer, Claim};
+pub use run::exposure::describe_exposure;
+pub use run::pilot::{Foretold, darkness, foretold};
+pub use run::results::RunResults;
+pub use run::summary::describe_render;
+pub use studies::brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
+pub use studies::budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
+pub use studies::convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
+pub use studies::coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
+pub use studies::experiment::{
+    Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold,
+};
+pub use studies::indicator::{
+    Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
+    NoisyOutcome, NoisyPoint, NoisySummary,
+};
+pub use studies::noise::{
+    AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
+    NoiseTasks, Picture, Point, Reach, RenderNoise,
+};
+pub use studies::power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
+pub use studies::registered::{AnyStudy, Found, Prepare, Registered, prepared};
+pub use studies::registry::STUDIES;
+pub use studies::tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use study::{Sharing, Study, Work, context, outputs, run};
-pub use summary::describe_render;
-pub use tails::Tails;
-pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
-pub use trust::by_trust;
-pub use unexplained::{Photographs, Unexplained, fewer};
-pub use unmodelled::{from_wall_to_wall, unmodelled};
-pub use validation::{Against, Integration, Validation, validate};
+pub use uncertainty::certainty::{Certainty, Errors, PooledFrom};
+pub use uncertainty::counted::Counted;
+pub use uncertainty::light_law::LightLaw;
+pub use uncertainty::smooth::polynomials;
+pub use uncertainty::tails::Tails;
+pub use uncertainty::unexplained::{Photographs, Unexplained, fewer};

@@ -1,7 +1,7 @@
 //! The inverse problem of a matrix model.
 
-use super::error::LabError;
-use super::validation::Integration;
+use crate::lab::comparison::validation::Integration;
+use crate::lab::error::LabError;
 use crate::matrix::Matrix;
 use crate::model::{
     Converged, Effort, ElementGrid, Extent, Factors, Kernel, MatrixModel, ModelError, Occlusion,

@@ -10,7 +10,7 @@ use super::spots::{PER_SIDE, across, layout};
 use crate::lab::LabError;
 use crate::lab::check::Check;
 use crate::lab::finding::{Axis, Curve, Finding, Mark, Plot, Table};
-use crate::lab::inversion::smallest_eigenvalue;
+use crate::lab::recovered::inversion::smallest_eigenvalue;
 use crate::metrics::rank_correlation;
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;

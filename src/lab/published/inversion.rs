@@ -5,7 +5,7 @@
 //! the condition, is left out, and r·k numbers take the place of r².
 
 use super::outcome::{Outcome, Trial};
-use crate::lab::inversion::noiseless;
+use crate::lab::recovered::inversion::noiseless;
 use crate::model::Published;
 use crate::num::linalg::{LinalgError, Svd, Tolerance, cut, svd};
 

@@ -31,7 +31,7 @@ mod tables;
 mod tasks;
 mod traced;
 
-pub use super::check::{Check, Verdict, Weight};
+pub use crate::lab::check::{Check, Verdict, Weight};
 pub use item::{Item, UnknownItem};
 pub use plan::ReproducePlan;
 pub use summary::{ItemSummary, overview};

@@ -4,7 +4,7 @@ use super::super::sheet::board;
 use super::adjoint;
 use crate::lab::LabError;
 use crate::lab::finding::Cell;
-use crate::lab::measures::Measures;
+use crate::lab::recovered::measures::Measures;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Uncertainty, recover};

@@ -1,0 +1,125 @@
+//! What is said of places that photographs do not tell, and of errors.
+
+use super::*;
+use crate::lab::finding::Describe;
+use crate::lab::uncertainty::certainty::Errors;
+
+/// A shift within the plane of a flat surface moves its picture: what photographs do not tell from
+/// another picture is refused.
+#[test]
+fn a_shift_of_the_picture_is_refused() {
+    let scene = bench();
+    let (phi, stderr) = photographed(&scene, 1e-2, 7);
+    let photographs = Unexplained {
+        phi: &phi,
+        stderr: Some(&stderr),
+        certainty: Certainty::STATED,
+        left_out: None,
+        patterns: None,
+    };
+    for what in ["u", "v"] {
+        let plan = LocatedPlan {
+            what,
+            ..by_centres([-1.0, 1.0], 0)
+        };
+        let refused = plan.locate(&scene, &photographs, Control::none());
+        let refused = refused.unwrap_err().to_string();
+        assert!(
+            refused.contains("where on them the picture lies"),
+            "{refused}"
+        );
+    }
+    // Of two faces in different planes only along the edge that both have.
+    let faces = Scene::load("scenes/known/two-faces.toml").unwrap();
+    for (what, is_within) in [("u", true), ("v", false), ("normal", false)] {
+        let plan = LocatedPlan {
+            what,
+            ..plan([0.0; 2], 0)
+        };
+        let altered = plan.misplaced().unwrap();
+        assert_eq!(altered.is_of_the_picture(&faces), is_within, "{what}");
+    }
+}
+
+/// Where within an element the light lies no photograph says: bright parts that end within
+/// elements have their middles within three stated errors, and none is stated finer than an element
+/// is, a side over √12.
+#[test]
+fn a_bright_part_is_known_no_finer_than_its_elements() {
+    let scene = bench();
+    let fine = LocatedPlan {
+        elements: Some([8, 8]),
+        ..by_centres([-0.2, 0.2], 0)
+    };
+    let model = fine.model(&scene).unwrap();
+    for (us, vs) in [(1..4, 2..5), (4..8, 5..7), (3..4, 3..4)] {
+        let bright = |j: usize| us.contains(&(j % 8)) && vs.contains(&(j / 8));
+        let own: Vec<usize> = (0..64).filter(|j| bright(*j)).collect();
+        let albedo: Vec<f64> = (0..64).map(|j| if bright(j) { 0.8 } else { 0.0 }).collect();
+        let clean = model.phi_of(&albedo);
+        let sigma = 2e-3 * clean.norm() / (clean.len() as f64).sqrt();
+        let phi = &clean + noise(clean.nrows(), clean.ncols(), 3) * sigma;
+        let stderr = clean.map(|_| sigma);
+        for elements in [4, 8] {
+            let plan = LocatedPlan {
+                elements: Some([elements; 2]),
+                ..fine
+            };
+            let found = located(&scene, &phi, &stderr, plan);
+            let found = found.picture.unwrap().bright.unwrap();
+            let error = found.stderr.unwrap();
+            let side = 4.0 / elements as f64;
+            assert!(error[0] >= 0.99 * side / 12f64.sqrt(), "{error:?}");
+            for (k, error) in error.into_iter().enumerate() {
+                let truth = own.iter().map(|j| model.places[*j][k]).sum::<f64>() / own.len() as f64;
+                let off = (found.middle[k] - truth) / error;
+                assert!(off.abs() < 3.0, "{us:?} {vs:?} {elements} {k}: {off}");
+            }
+        }
+    }
+}
+
+/// Two bright corners have their common middle where nothing is: that they are two is said, and of
+/// one board not.
+#[test]
+fn a_bright_part_in_pieces_is_told() {
+    let scene = bench();
+    let plan = LocatedPlan {
+        elements: Some([4, 4]),
+        ..by_centres([-0.2, 0.2], 0)
+    };
+    let model = plan.model(&scene).unwrap();
+    for (bright, pieces) in [(vec![0, 15], 2), (vec![5, 6, 9, 10], 1)] {
+        let albedo = |j: usize| if bright.contains(&j) { 0.8 } else { 0.0 };
+        let albedo: Vec<f64> = (0..16).map(albedo).collect();
+        let phi = model.phi_of(&albedo);
+        let sigma = 1e-3 * phi.norm() / (phi.len() as f64).sqrt();
+        let stderr = phi.map(|_| sigma);
+        let phi = &phi + noise(phi.nrows(), phi.ncols(), 3) * sigma;
+        let found = located(&scene, &phi, &stderr, plan);
+        let notes = found.describe().notes.concat();
+        assert_eq!(found.picture.unwrap().bright.unwrap().pieces, pieces);
+        assert_eq!(notes.contains("PIECES"), pieces > 1, "{notes}");
+    }
+}
+
+/// Errors that entries share are the same in every frame, so that none left out shows them.
+#[test]
+fn errors_that_hang_together_are_told() {
+    let scene = bench();
+    let (phi, stderr) = photographed(&scene, 1e-2, 9);
+    for errors in Errors::ALL {
+        let photographs = Unexplained {
+            phi: &phi,
+            stderr: Some(&stderr),
+            certainty: Certainty::new(errors, None),
+            left_out: None,
+            patterns: None,
+        };
+        let plan = by_centres([-0.5, 0.5], 0);
+        let found = plan.locate(&scene, &photographs, Control::none()).unwrap();
+        let notes = found.describe().notes.concat();
+        let is_shared = errors != Errors::Independent;
+        assert_eq!(notes.contains("HANG TOGETHER"), is_shared, "{notes}");
+    }
+}

@@ -1,0 +1,211 @@
+//! Photographs that a picture, or any picture, does not explain.
+
+use crate::lab::recovered::fit::{Attainable, Fit, Judged};
+use crate::num::digits::{figure, significant};
+use crate::recovery::{Method, Recovered, Weighting};
+
+fn told(fit: &Fit) -> String {
+    format!(
+        "χ²/dof {}, P {}",
+        significant(fit.chi2_per_dof, 3),
+        figure(fit.p, 2)
+    )
+}
+
+/// An entry that noise does not explain, whatever the others say.
+pub(super) fn outlier(judged: &Judged) -> Option<String> {
+    let far = judged.fit.as_ref()?.outlier?;
+    let others = match far.count - 1 {
+        0 => String::new(),
+        n => format!(" (and {n} more nearly as far)"),
+    };
+    Some(format!(
+        "the entry of pixel {} and spot {} lies {} standard errors off what the picture would photograph{others}, \
+         where chance leaves none and all others fit: a hot or dead pixel, a reflection, a cosmic ray. It moves the \
+         picture. Look at it, and leave it out (--left-out)",
+        far.pixel,
+        far.spot,
+        significant(far.z, 3)
+    ))
+}
+
+/// Photographs and model that contradict each other, or a picture that does not explain them though
+/// another does.
+pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
+    if let Some(best) = judged.best.as_ref().filter(|best| !best.possible.fits) {
+        return Some(contradiction(best));
+    }
+    let fit = judged.fit.as_ref()?;
+    if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
+        let counted = match &judged.moved {
+            Some(_) => "count both",
+            None => "know of noise alone: they are TOO SMALL",
+        };
+        return Some(format!(
+            "whether it fits CANNOT BE TOLD: it differs from the photographs by more than their noise ({}), \
+             but by no more than the integrals of the model may be off (with that taken off χ²/dof {}). The \
+             errors of the picture {counted}. More --elements are integrated more finely",
+            told(fit),
+            significant(within, 3)
+        ));
+    }
+    if fit.fits {
+        return None;
+    }
+    if judged.left_over.is_some() {
+        return Some(format!(
+            "DOES NOT FIT: it leaves more of the photographs over than noise of one size could, of which \
+             any reflectances leave {} times less (P {}). {}",
+            significant(fit.chi2_per_dof, 3),
+            figure(fit.p, 2),
+            cure(found.method)
+        ));
+    }
+    let own = format!(
+        "DOES NOT FIT: what this picture would photograph differs from the photographs by more than \
+         their noise ({})",
+        told(fit)
+    );
+    let Some(best) = &judged.best else {
+        return Some(format!(
+            "{own}. Geometry, order of frames, unit or standard errors may be wrong, or the method; \
+             recover with joint to tell"
+        ));
+    };
+    if found.method.is_joint() && found.weighting == Weighting::Unweighted {
+        return Some(format!(
+            "{own}, and others explain them ({}): all entries weigh alike, whatever their noise. Leave --weighting \
+             to the noise",
+            told(&best.possible)
+        ));
+    }
+    Some(format!(
+        "{own}, and others explain them ({}): the method is at fault, not the photographs. {}",
+        told(&best.possible),
+        cure(found.method)
+    ))
+}
+
+/// A search for the best of all pictures that came to no end.
+pub(super) fn none_possible(judged: &Judged) -> Option<String> {
+    let error = judged.none_possible.as_ref()?;
+    Some(format!(
+        "whether any reflectances between 0 and 1 explain the photographs is NOT KNOWN: none were \
+         found ({error})"
+    ))
+}
+
+/// What helps where another picture fits.
+fn cure(method: Method) -> &'static str {
+    match method {
+        Method::Tsvd | Method::Tikhonov | Method::TikhonovGradient => {
+            "Regularise less (--rank, --damping), or use joint"
+        }
+        Method::JointTv => "Lower --tv, or use joint",
+        Method::JointTwoValued => {
+            "There are more than two values, or the search has missed the pattern, or the noise is not \
+             of one size, which is supposed where none is stated (--noise, --stderr): use joint, or give \
+             the --levels"
+        }
+        Method::JointUnbounded => "Keep more directions (--tolerance), or use joint",
+        Method::Joint => "Compare nnls and joint-unbounded",
+        Method::Nnls | Method::JointGp => "Use joint",
+        _ => "It amplifies noise: use joint, or tsvd or tikhonov",
+    }
+}
+
+/// No reflectances between 0 and 1 explain the photographs.
+fn contradiction(best: &Attainable) -> String {
+    let told = told(&best.possible);
+    if best.brightness > 1.0 && best.any.as_ref().is_none_or(|any| any.fits) {
+        return format!(
+            "DOES NOT FIT, by any method: the photographs are {} times as bright as a surface of \
+             reflectance 1 would make them ({told}). Is Φcam in W, and are power, aperture and \
+             albedos of the scene right? Give it in W, or estimate one factor (--free-scale)",
+            significant(best.brightness, 3)
+        );
+    }
+    let chi2 = |fit: &Fit| fit.chi2_per_dof * fit.dof;
+    let any = match &best.any {
+        Some(any) if any.fits => {
+            "reflectances below 0 or above 1 could, which no surface has".to_owned()
+        }
+        // Weights other than those of χ²: of entries without an error, or by pixel and spot.
+        Some(any) if chi2(any) > chi2(&best.possible) => {
+            "it is not known whether other numbers do, as what fits best by the weights does not by the test".to_owned()
+        }
+        Some(any) => format!("no numbers at all do ({})", self::told(any)),
+        None => "it is not known whether other numbers do".to_owned(),
+    };
+    let exact = match best.possible.left_out {
+        0 => "",
+        _ => {
+            " the entries whose standard error is 0, if any: they count for the picture and no test sees them (leave \
+              them out, --left-out, or give their errors);"
+        }
+    };
+    format!(
+        "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
+         ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
+         small. Check{exact} geometry, order and orientation of the frames, unit and --stderr; more \
+         --elements where they are coarse; what stands in the way, in the scene; \
+         --frame-constant, --background or --occluder-light for other light; --integration centres \
+         where elements were taken at their centres, as `phicam model` does"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::sample::fit;
+    use crate::matrix::Matrix;
+    use crate::recovery::{Options, Problem, WeightRule, recover};
+
+    /// Where another picture fits, "leave it" is said of no option that was not given.
+    #[test]
+    fn a_cure_takes_back_only_what_was_given() {
+        let side =
+            |rows, columns| Matrix::from_fn(rows, columns, |i, j| 1.0 + ((i * j) % 3) as f64);
+        let (c, d) = (side(4, 2), side(2, 3));
+        let phi = &c * &d;
+        let stderr = Matrix::from_element(4, 3, 0.1);
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        let judged = Judged {
+            fit: Some(Fit {
+                p: 0.0,
+                fits: false,
+                ..fit(9.0)
+            }),
+            best: Some(Attainable {
+                possible: fit(1.0),
+                any: None,
+                brightness: 1.0,
+            }),
+            ..Judged::default()
+        };
+        let methods = [
+            Method::Joint,
+            Method::Nnls,
+            Method::JointUnbounded,
+            Method::Pinv,
+        ];
+        for method in methods {
+            for weighting in [WeightRule::Noise, WeightRule::Unweighted] {
+                let options = Options {
+                    weighting,
+                    ..Options::default()
+                };
+                let found = recover(method, &problem, &options).unwrap();
+                let told = misfit(&found, &judged).unwrap();
+                let is_taken_back = told.contains("Leave --weighting");
+                let was_given = weighting == WeightRule::Unweighted && method.is_joint();
+                assert_eq!(is_taken_back, was_given, "{method}: {told}");
+                assert_eq!(
+                    told.matches("Leave").count(),
+                    usize::from(was_given),
+                    "{told}"
+                );
+            }
+        }
+    }
+}
