@@ -1,5 +1,5 @@
 """Writes the licences of all crates that are linked into the module (THIRD-PARTY.txt) and into the command
-(../src/cli/third_party.txt, which `phicam notices` prints); with --check fails where one is stale.
+(../src/cli/commands/third_party.txt, which `phicam notices` prints); with --check fails where one is stale.
 
 usage: python notices.py [--check]
 """
@@ -15,7 +15,7 @@ HERE = Path(__file__).parent
 #: What is linked, the manifest of that package, the file of its notices.
 OUTPUTS = [
     ("phicam's Python module", HERE / "Cargo.toml", HERE / "THIRD-PARTY.txt"),
-    ("The command phicam", HERE.parent / "Cargo.toml", HERE.parent / "src/cli/third_party.txt"),
+    ("The command phicam", HERE.parent / "Cargo.toml", HERE.parent / "src/cli/commands/third_party.txt"),
 ]
 
 

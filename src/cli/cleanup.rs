@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-use super::failure::Failure;
+use crate::cli::failure::Failure;
 use crate::store::{is_abandoned, is_missing};
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.

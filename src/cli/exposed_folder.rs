@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::cleanup::{remove_abandoned, remove_named, remove_numbered};
-use super::failure::Failure;
-use super::output;
-use super::replacement::{move_in, remove_folder};
+use crate::cli::cleanup::{remove_abandoned, remove_named, remove_numbered};
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use crate::cli::replacement::{move_in, remove_folder};
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::folder::Record;
 use crate::folder::names::{COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};

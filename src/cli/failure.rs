@@ -4,8 +4,8 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::io;
 
-use super::console::complain;
-use super::interrupt;
+use crate::cli::console::complain;
+use crate::cli::interrupt;
 use crate::jobs::JobError;
 use crate::lab::StudyError;
 use crate::lab::options::OptionError;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::failure::{Failure, Outcome};
-use super::output;
+use crate::cli::failure::{Failure, Outcome};
+use crate::cli::output;
 use crate::lab::Found;
 use crate::report::{Invocation, finding_files, finding_html, finding_text};
 use crate::store::harmless_json;

@@ -3,9 +3,9 @@
 
 use clap::{CommandFactory, Parser};
 
-use super::args::Args;
-use super::failure::{Codes, Failure};
-use super::output;
+use crate::cli::args::Args;
+use crate::cli::failure::{Codes, Failure};
+use crate::cli::output;
 use crate::scene::reference::{self, Key};
 
 /// Columns of what is printed.

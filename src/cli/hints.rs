@@ -3,7 +3,7 @@
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::{Arg, Command, CommandFactory};
 
-use super::args::Args;
+use crate::cli::args::Args;
 use crate::lab::STUDIES;
 use crate::recovery::Method;
 use crate::scene::builtins;

@@ -4,7 +4,7 @@ use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::console::complain;
+use crate::cli::console::complain;
 use crate::store::is_at_rest;
 use crate::transport::Control;
 

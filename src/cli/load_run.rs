@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::console::Console;
-use super::failure::Failure;
-use super::run_folder::{CALIBRATION, IMPORT, IMPORT_PNG, LEFT_OUT, SCENE, TAILS};
+use crate::cli::console::Console;
+use crate::cli::failure::Failure;
+use crate::cli::run_folder::{CALIBRATION, IMPORT, IMPORT_PNG, LEFT_OUT, SCENE, TAILS};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::matrix::Matrix;

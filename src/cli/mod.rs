@@ -47,13 +47,9 @@
 //! file `.phs` that is none of the plan, or contradicts another, is refused (65).
 
 mod args;
-mod batches;
-mod beside;
-mod calibrate;
 mod cleanup;
-mod completions;
+mod commands;
 mod console;
-mod expose;
 mod exposed_folder;
 mod failure;
 mod findings;
@@ -61,50 +57,28 @@ pub mod from_your_camera;
 pub mod guide;
 mod help;
 mod hints;
-mod import;
 mod interrupt;
 mod load_run;
-mod locate;
-mod man;
-mod many;
 pub mod many_machines;
-mod mask;
-mod model;
-mod new;
-mod notices;
 mod output;
 mod partial;
-mod preview;
 mod process;
 mod progress;
-mod recover;
-mod recover_memory;
-mod recover_options;
-mod recover_own;
-mod recovered;
-mod render;
 mod replacement;
-mod reproduce;
-mod run;
 mod run_folder;
-mod scene;
 pub mod serve;
 mod settings;
-mod spelled;
-mod stack;
-mod study;
 mod suspicious;
-mod target;
-mod tasks;
-mod unexplained;
-mod validate;
-mod view;
 
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
+use commands::{
+    calibrate, completions, expose, import, locate, man, many, model, new, notices, recover,
+    render, reproduce, run, scene, stack, study, target, validate, view,
+};
 use console::{Console, complain};
 use failure::{Codes, Failure, Outcome};
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::failure::Failure;
+use crate::cli::failure::Failure;
 use crate::folder::Record;
 use crate::store::{self, StoreError, write_whole};
 use crate::store::{harmless, harmless_json};

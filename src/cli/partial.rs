@@ -6,8 +6,8 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::cleanup::remove_files;
-use super::failure::Failure;
+use crate::cli::cleanup::remove_files;
+use crate::cli::failure::Failure;
 use crate::jobs::{self, BlockFile, Identity, Spots};
 use crate::scene::Scene;
 use crate::store::ensure_writable;

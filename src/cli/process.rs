@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use rayon::ThreadPool;
 
-use super::failure::Failure;
-use super::interrupt::warned;
+use crate::cli::failure::Failure;
+use crate::cli::interrupt::warned;
 use crate::jobs::Process;
 use crate::store::threads_that_fit;
 

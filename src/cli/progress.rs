@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::console::Console;
-use super::interrupt::stop_flag;
+use crate::cli::console::Console;
+use crate::cli::interrupt::stop_flag;
 use crate::lab::Work;
 use crate::matrix::Matrix;
 use crate::num::digits::significant;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::failure::Failure;
+use crate::cli::failure::Failure;
 use crate::store::{ensure_writable, flush, is_missing};
 
 /// Moves what is in the folder `incoming` to its place in `dir`: what the folders `folders` hold,

@@ -1,6 +1,6 @@
 //! The folder of a run: what may be written into it, and what is read back from it; its files are
 //! those of [`folder`](crate::folder), and `partial/`, what is finished of an unfinished run
-//! ([`super::partial`]).
+//! ([`crate::cli::partial`]).
 
 mod refusing;
 mod replacing;
@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::cleanup::remove_abandoned;
-use super::console::Console;
-use super::failure::Failure;
-use super::partial::Partial;
+use crate::cli::cleanup::remove_abandoned;
+use crate::cli::console::Console;
+use crate::cli::failure::Failure;
+use crate::cli::partial::Partial;
 use crate::film::{self, frame_name};
 pub(super) use crate::folder::names::{
     CALIBRATED, CALIBRATED_FILES, CALIBRATION, EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED,

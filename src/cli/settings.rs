@@ -1,10 +1,10 @@
 //! Checked settings from raw arguments.
 
-use super::args::{PathArgs, TestArgs};
-use super::console::Console;
-use super::failure::Failure;
-use super::interrupt;
-use super::process::pool;
+use crate::cli::args::{PathArgs, TestArgs};
+use crate::cli::console::Console;
+use crate::cli::failure::Failure;
+use crate::cli::interrupt;
+use crate::cli::process::pool;
 use crate::lab::{self, Certainty, Errors, LabError, Test};
 use crate::scene::Scene;
 use crate::transport::{Budget, Estimator, Plan, unsupported_surface};

@@ -1,8 +1,8 @@
 //! What only tracing shows to be suspicious, said before the hours are spent.
 
-use super::console::Console;
-use super::failure::Failure;
-use super::interrupt::control;
+use crate::cli::console::Console;
+use crate::cli::failure::Failure;
+use crate::cli::interrupt::control;
 use crate::lab::{Foretold, LabError, darkness, foretold};
 use crate::scene::Scene;
 use crate::transport::{Estimator, Plan, Sampling};

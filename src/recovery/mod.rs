@@ -190,9 +190,9 @@ fn by(
         | Method::TikhonovGradient => pixelwise::recover(method, problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
         Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
-        Method::JointGp => joint::unknown_noise::recover(problem, options),
+        Method::JointGp => joint::process::unknown_noise::recover(problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),
-        Method::JointTwoValued => joint::two_valued::recover(problem, options),
+        Method::JointTwoValued => joint::patterns::two_valued::recover(problem, options),
     }
 }
 

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand};
 
-use super::failure::Codes;
+use crate::cli::failure::Codes;
 use crate::lab::Integration;
 use crate::model::Kernel;
 use terms::explained;

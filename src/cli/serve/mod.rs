@@ -60,13 +60,13 @@ use std::net::SocketAddr;
 
 use tokio::runtime;
 
-use super::Outcome;
-use super::args::ServeArgs;
-use super::console::Console;
-use super::failure::Failure;
-use super::interrupt::stop_flag;
-use super::output;
-use super::run_folder::{PHI, REPORT};
+use crate::cli::Outcome;
+use crate::cli::args::ServeArgs;
+use crate::cli::console::Console;
+use crate::cli::failure::Failure;
+use crate::cli::interrupt::stop_flag;
+use crate::cli::output;
+use crate::cli::run_folder::{PHI, REPORT};
 use crate::folder::Record;
 use folder::Served;
 use made::Kept;

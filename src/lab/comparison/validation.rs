@@ -55,8 +55,8 @@ pub struct Validation {
 /// Standard errors from few replicates are pooled over pixels and spots where these say more.
 ///
 /// What is `beside` it is fitted to the entries whose standard error is not zero, and taken out
-/// ([`Eliminated`](crate::lab::Eliminated)). A free scale that is not above 0 at the significance level
-/// of `test` is no evidence: nothing of the model's light is seen.
+/// ([`Eliminated`](crate::lab::Eliminated)). A free scale that is not above 0 at the significance
+/// level of `test` is no evidence: nothing of the model's light is seen.
 ///
 /// # Errors
 /// [`ValidationError`] if nothing is hidden, shapes or numbers do not fit, or other light could be

@@ -16,7 +16,7 @@ const LEFT: f64 = 1e-6;
 /// More than this share of a misfit is most of it.
 const MOST: f64 = 0.5;
 
-/// The patterns of [`over_view`](crate::lab::comparison::over_view::over_view), of the light that is found.
+/// The patterns of [`over_view`](crate::lab::comparison::over_view), of the light that is found.
 const KINDS: [(&str, &str, Range<usize>); 2] = [
     (
         "light that all frames share (even, or a slope over the view)",

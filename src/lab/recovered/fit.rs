@@ -17,7 +17,8 @@
 //! numbers leave over ([`LeftOver`]).
 //!
 //! χ²/(N − ν) is compared with χ² of N − ν degrees of freedom where entries are independent, of
-//! fewer where those of a row are not, of one where all hang together ([`Errors`](crate::lab::Errors)).
+//! fewer where those of a row are not, of one where all hang together
+//! ([`Errors`](crate::lab::Errors)).
 //!
 //! A picture that is refuted so is held against the photographs once more, |Φ − Φ̂| less what the
 //! last steps of the model's integrals move of Φ̂ ([`Factors::moved`]): what these leave over is no

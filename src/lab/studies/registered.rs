@@ -14,8 +14,8 @@ use crate::transport::Control;
 /// Makes a study ready for a scene, with the values of its options.
 pub type Prepare = fn(&Scene, &Values) -> Result<Box<dyn AnyStudy>, StudyError>;
 
-/// A study that can be asked for by name. With this in its file, and a line in [`crate::lab::STUDIES`],
-/// it has a command with help, progress, shards, and files.
+/// A study that can be asked for by name. With this in its file, and a line in
+/// [`crate::lab::STUDIES`], it has a command with help, progress, shards, and files.
 #[derive(Debug)]
 pub struct Registered {
     /// Its name on the command line and of its files.

@@ -3,10 +3,10 @@
 
 use nalgebra::DMatrix;
 
-use super::reduced::Reduced;
-use super::stacked::stack;
-use super::weights;
 use crate::num::quadratic::{Bounds, box_least_squares};
+use crate::recovery::joint::operator::reduced::Reduced;
+use crate::recovery::joint::operator::stacked::stack;
+use crate::recovery::joint::operator::weights;
 use crate::recovery::{Bands, Method, Options, Problem, Recovered, RecoveryError, bands};
 
 /// `method` is [`Method::Joint`] or [`Method::Nnls`].

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::khatri_rao::{Operator, operator};
-use super::reduced::finish;
 use crate::num::linalg::{Cholesky, LeastSquares};
+use crate::recovery::joint::operator::khatri_rao::{Operator, operator};
+use crate::recovery::joint::operator::reduced::finish;
 use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, WeightRule, bands};
 
 /// A direction that is known to no better than this many times the largest picture says nothing.
@@ -17,7 +17,7 @@ const UNKNOWN: f64 = 100.0;
 /// for the unbounded least-squares estimate x̂ along k directions V (k × n) of the joint operator,
 /// whose errors have the covariance that the noise makes of them. Of unknown noise, the same in all
 /// entries, the variance is what least squares leaves over, times the pixels that it hangs together
-/// over ([`super::correlated`]) where those are known.
+/// over ([`crate::recovery::joint::process::correlated`]) where those are known.
 pub(super) struct Coordinates {
     pub(super) v: DMatrix<f64>,
     pub(super) y: DVector<f64>,

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linear::about_grey;
-use super::{stacked, weights};
 use crate::num::linalg::{Tolerance, rows_over, svd};
+use crate::recovery::joint::operator::linear::about_grey;
+use crate::recovery::joint::{operator::stacked, operator::weights};
 use crate::recovery::{Method, Options, Problem, RecoveryError};
 
 /// Directions below this fraction of the strongest are lost: QR without pivoting has an error of

@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::khatri_rao::operator;
-use super::linear::about_grey;
-use super::scale;
 use crate::num::linalg::{Tolerance, cut};
+use crate::recovery::joint::operator::khatri_rao::operator;
+use crate::recovery::joint::operator::linear::about_grey;
+use crate::recovery::joint::operator::scale;
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.

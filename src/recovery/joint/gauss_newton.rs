@@ -8,14 +8,16 @@
 //! >                                          + ε_l (1 + ε₀) m + ε (1 + ε₀_l) m + …
 //!
 //! So a factor is one more pattern, of a size that is known beforehand: its elimination
-//! ([`super::conditional`]) gives every method rows of unit noise for x alone, whose normal matrix
-//! is H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with
-//! ε unknown. The estimates are then set to what was found and all is done again, until the factors
-//! no longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
-//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary. Of
-//! `joint-gp`, which knows of what size x is, the factors of the frames are the likeliest whatever
-//! x ([`Linear`]): fitted together, the picture would be the least and the factors the largest.
-//! Over ε it integrates itself ([`super::gaussian_process`]): x is the light (1 + ε) ρ here.
+//! ([`conditional`](super::operator::conditional)) gives every method rows of unit noise for x
+//! alone, whose normal matrix is H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and
+//! bounds are those of x with ε unknown. The estimates are then set to what was found and all is
+//! done again, until the factors no longer change (Gauss–Newton, by half steps where whole ones do
+//! not settle). Where that ends, (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's
+//! own terms is stationary. Of `joint-gp`, which knows of what size x is, the factors of the frames
+//! are the likeliest whatever x ([`Linear`]): fitted together, the picture would be the least and
+//! the factors the largest.
+//! Over ε it integrates itself ([`gaussian_process`](super::process::gaussian_process)): x is the
+//! light (1 + ε) ρ here.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.
@@ -26,9 +28,9 @@
 
 use nalgebra::DVector;
 
-use super::bounded;
-use super::khatri_rao::operator;
-use super::linear::{Estimates, Linear};
+use crate::recovery::joint::bounded;
+use crate::recovery::joint::operator::khatri_rao::operator;
+use crate::recovery::joint::operator::linear::{Estimates, Linear};
 use crate::recovery::soft::Soft;
 use crate::recovery::{
     Gains, Method, Options, Problem, Recovered, RecoveryError, Shared, WeightRule,

@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::khatri_rao::operator;
-use super::linear::about_grey;
+use crate::recovery::joint::operator::khatri_rao::operator;
+use crate::recovery::joint::operator::linear::about_grey;
 use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError, Weighting};
 
 /// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C

@@ -4,7 +4,8 @@
 //!
 //! TV is the anisotropic total variation, Σ |ρ_a − ρ_b| over all pairs of neighbours along u and
 //! along v of each grid: edges along the rows and columns of elements cost their length. With a
-//! free scale the penalty is on s ρ/s₀ ([`super::scale`]), and only s ρ ≥ 0 is asked.
+//! free scale the penalty is on s ρ/s₀ ([`scale`](super::operator::scale)), and only s ρ ≥ 0 is
+//! asked.
 //!
 //! λ is given as a fraction of σ₁², σ₁ the largest singular value of the weighted operator, or it
 //! is the one at which the photographs are likeliest if the penalty is a prior, p(ρ|λ) ∝ exp(−λ TV)
@@ -31,9 +32,9 @@ use std::iter::successors;
 
 use rayon::prelude::*;
 
-use super::reduced::Reduced;
 use crate::num::control::{Control, Steps};
 use crate::num::quadratic::{Bounds, Fused, box_least_squares, fused_least_squares};
+use crate::recovery::joint::operator::reduced::Reduced;
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, WeightRule,
 };

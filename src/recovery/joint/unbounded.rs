@@ -5,9 +5,9 @@
 //! (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹. Where directions are dropped as
 //! rounding, elements that they may move by more than the noise have no finite standard error.
 
-use super::khatri_rao::operator;
-use super::reduced::{finish, over_brightest};
 use crate::num::linalg::{Tolerance, tr_product};
+use crate::recovery::joint::operator::khatri_rao::operator;
+use crate::recovery::joint::operator::reduced::{finish, over_brightest};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 pub(in crate::recovery) fn recover(

@@ -1,0 +1,168 @@
+//! `phicam calibrate`: the geometry, from the photographs.
+
+use super::beside::frame_gain;
+use super::mask::refuse_clipped;
+use super::spelled::Spelled;
+use super::unexplained::{elements, of_files, of_run};
+use crate::cli::args::CalibrateArgs;
+use crate::cli::console::Console;
+use crate::cli::failure::{Failure, NOTHING_KEPT};
+use crate::cli::findings::deliver;
+use crate::cli::load_run::read_run_or_scene;
+use crate::cli::output;
+use crate::cli::process::pool;
+use crate::cli::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
+use crate::cli::{Outcome, progress};
+use crate::folder::write_copies;
+use crate::jobs::need;
+use crate::lab::finding::Describe;
+use crate::lab::{CalibrationPlan, Found, Free, Work};
+use crate::report::Invocation;
+use crate::scene::Scene;
+
+pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
+    let (scene, record) = read_run_or_scene(&args.dir, args.phi.as_deref(), console)?;
+    let own = record.as_ref().filter(|_| args.phi.is_none());
+    let origin = own.map(|record| &record.origin);
+    let plan = CalibrationPlan {
+        frame_gain: frame_gain(args.frame_gain, origin, console),
+        ..plan(args, &scene, console)
+    };
+    need::calibrate(&scene, plan.elements)?;
+    let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
+    let photographs = match (&args.phi, &record) {
+        (None, Some(record)) => {
+            let beside = (polynomial, args.background);
+            of_run(&args.dir, (&scene, record), left_out, beside)?
+        }
+        (phi, _) => {
+            let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
+            if args.phi.is_some() && left_out.is_none() {
+                refuse_clipped(&phi, &scene, "")?;
+            }
+            let beside = [args.stderr.as_deref(), left_out];
+            of_files(&phi, beside, &scene, (polynomial, args.replicates))?
+        }
+    };
+    let output = args
+        .output
+        .clone()
+        .unwrap_or_else(|| args.dir.join(CALIBRATED));
+    output::refuse_run(&output)?;
+    let lock = RunFolder::lock(&output, "phicam calibrate")?;
+    let pool = pool(args.threads)?;
+    let what = format!("calibrate {}", scene.name);
+    let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
+        pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
+    });
+    let calibration = match found {
+        Ok(calibration) => calibration,
+        Err(e) => {
+            drop(lock);
+            // Nothing is left where nothing was done.
+            let _ = std::fs::remove_dir(&output);
+            return Err(Failure::of(e.into()).if_stopped(NOTHING_KEPT));
+        }
+    };
+    let found = Found {
+        json: serde_json::to_string_pretty(&calibration)?,
+        finding: calibration.describe(),
+        agrees: calibration.is_found(),
+    };
+    let asked = invocation(args, &plan.free, &scene);
+    let outcome = deliver("calibration", &found, &output, &asked, args.json)?;
+    write_copies(&output, &scene)?;
+    console.say(format!(
+        "{0}: written; scene.toml there is the calibrated scene: `phicam recover {0}{1}`",
+        output.display(),
+        recovering(args, plan.frame_gain)
+    ));
+    Ok(outcome)
+}
+
+/// With what the same photographs are recovered by the calibrated scene.
+fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>) -> Spelled {
+    let own = |name: &str| Some(args.dir.join(name)).filter(|file| file.exists());
+    let (phi, stderr) = match &args.phi {
+        Some(phi) => (phi.clone(), args.stderr.clone()),
+        None => (args.dir.join(PHI), own(STDERR)),
+    };
+    Spelled::default()
+        .file("--phi", Some(&phi))
+        .file("--stderr", stderr.as_deref())
+        .file("--left-out", args.left_out.as_deref())
+        .maybe("--replicates", args.replicates)
+        .maybe("--frame-polynomial", args.frame_polynomial)
+        .flag("--background", args.background)
+        .flag("--free-scale", args.free_scale)
+        .maybe("--method", args.error_field.then_some("joint-gp"))
+        .flag("--error-field", args.error_field)
+        .maybe("--frame-gain", frame_gain)
+}
+
+/// What is to be done, with what is not given.
+fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPlan {
+    CalibrationPlan {
+        free: free(&args.free, scene),
+        frame_gain: args.frame_gain,
+        is_scale_free: args.free_scale,
+        error_field: args.error_field,
+        background: args.background,
+        elements: elements(args.elements, scene, console),
+        occlusion: args.occlusion.occlusion(),
+        integration: args.integration,
+        starts: usize::from(args.starts),
+        spread: args.spread,
+        seed: args.seed,
+    }
+}
+
+/// What is free, with what the scene knows of it; all that it is uncertain of unless something is
+/// named.
+fn free(given: &[Free], scene: &Scene) -> Vec<Free> {
+    let stated = |name: &str| {
+        let own = scene.uncertainty.iter().find(|(own, _)| own == name);
+        own.map(|(_, sigma)| *sigma)
+    };
+    if given.is_empty() {
+        let all = scene.uncertainty.iter();
+        return all
+            .map(|(name, sigma)| Free {
+                name: name.clone(),
+                sigma: Some(*sigma),
+            })
+            .collect();
+    }
+    let known = |free: &Free| Free {
+        sigma: free.sigma.or_else(|| stated(&free.name)),
+        ..free.clone()
+    };
+    given.iter().map(known).collect()
+}
+
+/// How to ask for it again.
+fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation {
+    let of = |f: &Free| match f.sigma {
+        Some(sigma) => format!("{}={sigma}", f.name),
+        None => f.name.clone(),
+    };
+    let free: Vec<String> = free.iter().map(of).collect();
+    Spelled::default()
+        .with("--free", free.join(","))
+        .with("--starts", args.starts)
+        .with("--spread", args.spread)
+        .with("--seed", args.seed)
+        .with("--integration", args.integration)
+        .file("--phi", args.phi.as_deref())
+        .file("--stderr", args.stderr.as_deref())
+        .maybe("--replicates", args.replicates)
+        .maybe("--frame-gain", args.frame_gain)
+        .flag("--free-scale", args.free_scale)
+        .flag("--error-field", args.error_field)
+        .flag("--background", args.background)
+        .pair("--elements", args.elements, "x")
+        .maybe("--frame-polynomial", args.frame_polynomial)
+        .file("--left-out", args.left_out.as_deref())
+        .flag("--no-occlusion", args.occlusion.no_occlusion)
+        .of_folder("calibrate", &args.dir, scene)
+}

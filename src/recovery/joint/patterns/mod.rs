@@ -1,0 +1,17 @@
+//! Pictures of two levels: patterns, how likely each is, and their sums.
+
+mod apart;
+mod branch;
+mod enumerated;
+pub(super) mod fields;
+mod levels;
+pub(super) mod neighbours;
+pub(super) mod part;
+pub(super) mod pattern_lattice;
+mod pattern_likelihood;
+mod pattern_search;
+mod pattern_sums;
+mod sampled;
+mod sampler;
+mod spread;
+pub(in crate::recovery) mod two_valued;
