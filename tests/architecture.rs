@@ -46,7 +46,10 @@ const DOORS: [(&str, &[&str]); 31] = [
     ("postcard", &["lab/bytes"]),
     ("rustix", &["store"]),
     ("clap", &["cli"]),
-    ("clap_complete", &["cli/args/new", "cli/commands/completions"]),
+    (
+        "clap_complete",
+        &["cli/args/new", "cli/commands/completions"],
+    ),
     ("clap_mangen", &["cli/commands/man"]),
     ("indicatif", &["cli"]),
     ("terminal_size", &["cli/commands/view/terminal"]),

@@ -29,6 +29,10 @@ pub struct Photographs {
     /// Whether all spots of a pixel share an error that matters: that of their dark frames.
     #[serde(default)]
     pub shares_by_pixel: bool,
+    /// Variance of the entries' variances over their squares, which all share: how well repeats
+    /// tell the noise; 0 where it was given.
+    #[serde(default)]
+    pub noise_unknown: f64,
     /// Largest relative error of a frame's gain, which all its pixels share; absent where all are
     /// exact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -49,6 +53,14 @@ impl Origin {
     /// Whether all spots of a pixel share an error of photographs.
     pub fn shares_by_pixel(&self) -> bool {
         matches!(self, Self::Imported { imported } if imported.shares_by_pixel)
+    }
+
+    /// Variance of the variances of photographs over their squares, which all share.
+    pub fn noise_unknown(&self) -> f64 {
+        match self {
+            Self::Imported { imported } => imported.noise_unknown,
+            Self::Rendered(_) => 0.0,
+        }
     }
 
     /// How well the gains of photographs are known; none where they are exact.

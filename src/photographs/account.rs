@@ -57,6 +57,9 @@ pub struct ImportAccount {
     /// The gain of each spot that has one other than 1, with its standard error, which all pixels
     /// of the photograph share: the standard errors of Φ leave it out.
     pub gains: Vec<(usize, f64, f64)>,
+    /// Variance of the entries' variances over their squares, by the line that the noise was found
+    /// by, mean over the entries: all are off alike.
+    pub unknown: f64,
     /// Part of the variance that is that of the dark frames, which all spots of a pixel share, mean
     /// over the entries.
     pub common: f64,

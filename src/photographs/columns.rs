@@ -5,7 +5,7 @@ use super::error::{PhotographError, refused};
 use super::footprints::Footprints;
 use super::highest::Highest;
 use super::left_out::{DEAD, HALO, MISSING, OUTSIDE, SATURATED, in_halo};
-use super::noise::CameraNoise;
+use super::noise::{CameraNoise, PhotonTransferFit};
 use super::placing::Placing;
 use super::plane::Averaged;
 use super::read::Reader;
@@ -28,6 +28,9 @@ pub(super) struct Columns {
     /// How much too dark the light as a whole comes out, in its standard errors, where the variance
     /// of an entry is by its own light and entries are weighted by it.
     pub by_own_light: f64,
+    /// Variance of the entries' variances over their squares, mean over the entries, where these
+    /// follow from a line through repeats; 0 where the noise is given.
+    pub unknown: f64,
     /// Part of the variance that is that of the dark frames, mean over the entries.
     pub common: f64,
     /// Part of the variance that is that of the flat field, mean over the entries.
@@ -43,7 +46,7 @@ impl Columns {
         set: &Set,
         scene: &Scene,
         (shots, placing): (&Shots<'_>, &Placing),
-        noise: Option<CameraNoise>,
+        (noise, line): (Option<CameraNoise>, Option<&PhotonTransferFit>),
         reader: &mut Reader<'_>,
     ) -> Result<Self, PhotographError> {
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
@@ -72,6 +75,7 @@ impl Columns {
             zeros: 0.0,
             highest: Highest::default(),
             by_own_light: 0.0,
+            unknown: 0.0,
             common: 0.0,
             of_flat: 0.0,
             rounded: 0.0,
@@ -114,6 +118,12 @@ impl Columns {
                 .variance
                 .map(|v| placing.footprints.gathered_variance(&v));
             let slope = placing.footprints.gathered_variance(&corrected.slope);
+            let below = correction.shortest.map(|dark| &dark.light);
+            let above = |k: usize| mean.light[k] - below.map_or(0.0, |dark| dark[k]);
+            let unknown = line.map(|line| {
+                let each = (0..mean.light.len()).map(|k| line.unknown(above(k), mean.rounding[k]));
+                placing.footprints.gathered(&each.collect::<Vec<f64>>())
+            });
             for pixel in 0..pixels {
                 let code = code.of(spot, pixel, &mean.saturated);
                 found.left_out[(pixel, spot)] = f64::from(code);
@@ -125,6 +135,9 @@ impl Columns {
                 if let Some(variance) = &variance {
                     // All pixels share the gain's error: it is not one of the entry.
                     found.stderr[(pixel, spot)] = factor * variance[pixel].sqrt();
+                    if let Some(unknown) = &unknown {
+                        found.unknown += unknown[pixel] / weights[pixel];
+                    }
                     if variance[pixel] > 0.0 {
                         found.rounded +=
                             (corrected.rounded * weights[pixel]).powi(2) / variance[pixel];
@@ -140,6 +153,7 @@ impl Columns {
         found.common /= seen.max(1) as f64;
         found.of_flat /= seen.max(1) as f64;
         found.rounded = (found.rounded / known.max(1) as f64).sqrt();
+        found.unknown /= known.max(1) as f64;
         if found.phi.iter().any(|x| !x.is_finite()) {
             return Err(refused(
                 "a flux comes out as infinite",

@@ -16,10 +16,14 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, colourless, copied, flickers, little_left, misstated, no_light, roughly,
-    rounded, shared, unsaid,
+    bent, by_own_light, colourless, copied, extrapolated, flickers, little_left, misstated,
+    no_light, roughly, rounded, shared, unsaid,
 };
 use crate::scene::{Scene, SceneError};
+
+/// Variance of the entries' variances over their squares above which no standard error is stated: it
+/// would be known to a sixth of itself.
+const MOST_UNKNOWN: f64 = 0.1;
 
 /// The scene with the spots whose positions the set lists, if it does.
 ///
@@ -115,7 +119,9 @@ pub fn import(
         Some(photon_transfer(all, shots.has_offset())?)
     };
     let noise = given.or(line.map(|l| l.noise));
-    let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
+    let known = (noise, line.as_ref());
+    let columns = Columns::of(set, scene, (&shots, &placing), known, &mut reader)?;
+    let is_known = columns.unknown <= MOST_UNKNOWN;
     let left_out = LeftOut::of(&columns.left_out);
     let mut warnings = unsaid(set, &placing);
     warnings.extend(little_left(&left_out));
@@ -136,6 +142,9 @@ pub fn import(
     warnings.extend(shared(placing.footprints.shared()));
     warnings.extend(line.and_then(|line| bent(&line, shots.differ())));
     warnings.extend(contradicted.map(misstated));
+    if noise.is_some() && !is_known {
+        warnings.push(extrapolated(columns.unknown));
+    }
     warnings.extend(flicker.found().map(flickers));
     if noise.is_some_and(|n| n.has_offset) {
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
@@ -192,6 +201,7 @@ pub fn import(
         mark_error: fitted.as_ref().and_then(|f| f.mark_error),
         mark_residuals: fitted.map_or(Vec::new(), |f| f.residuals),
         gains: columns.gains,
+        unknown: columns.unknown,
         common: columns.common,
         of_flat: columns.of_flat,
         left_out,
@@ -201,7 +211,7 @@ pub fn import(
     account.warnings.extend(account.frame_gain().map(roughly));
     Ok(Imported {
         phi: columns.phi,
-        stderr: noise.map(|_| columns.stderr),
+        stderr: noise.filter(|_| is_known).map(|_| columns.stderr),
         left_out: columns.left_out,
         mean: (columns.mean, shots.size),
         mapping,

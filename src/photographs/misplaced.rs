@@ -1,14 +1,18 @@
 //! Photographs that do not lie where marks, camera and view have them.
 
 use super::lens::Lens;
-use super::mapping::{Fitted, Mapping, Mark};
+use super::mapping::{Fitted, Mapping, Mark, OddMark};
 use crate::num::digits::figure;
+use crate::num::statistics::fisher_sf;
 use crate::scene::Camera;
 
 /// Error of a mark, px, above which it was not read where it is.
 const MISREAD: f64 = 1.0;
 /// Part of the marks' error that is left to the others without one that is to be blamed.
 const ODD: f64 = 0.3;
+/// How far off, px, and how improbably, one among others that lie well is told too.
+const LONE: f64 = 0.5;
+const SELDOM: f64 = 1e-3;
 /// How far from square the pixels of a view without marks may be.
 const STRETCH: f64 = 0.02;
 /// Part by which a camera's distance from the wall may be off before its watts are.
@@ -31,10 +35,24 @@ pub(super) fn mirrored(mapping: &Mapping, camera: &Camera) -> Option<String> {
     })
 }
 
-/// That marks do not lie where any mapping has them.
+/// That marks do not lie where any mapping has them; or one of n of which the others' mapping knows
+/// better. With S the squares of all and S′ those of the others, each mark of two numbers and a
+/// mapping of eight,
+///
+/// > (S − S′)/2 / (S′/(2n − 10)) ~ F(2, 2n − 10),   the largest of n.
 pub(super) fn misread(fitted: &Fitted, marks: &[Mark], lens: Option<Lens>) -> Option<String> {
-    let error = fitted.mark_error.filter(|error| *error > MISREAD)?;
+    let error = fitted.mark_error?;
+    let n = marks.len() as f64;
     let odd = Mapping::odd_mark(marks, lens).filter(|odd| odd.others < ODD * error);
+    let is_lone = |odd: &OddMark| {
+        let freedom = 2.0 * n - 10.0;
+        let others = odd.others * odd.others;
+        let own = 0.5 * (error * error * (freedom + 2.0) - others * freedom);
+        odd.off > LONE && (others == 0.0 || n * fisher_sf(own / others, 2.0, freedom) < SELDOM)
+    };
+    if error <= MISREAD && !odd.as_ref().is_some_and(is_lone) {
+        return None;
+    }
     let which = match odd {
         Some(odd) => format!(
             "; without the {}. of the list, {} px from where the others have it, these lie {} px off: check its pixel and place",
@@ -122,10 +140,11 @@ mod tests {
             misread(&Mapping::from_marks(&marks, None).unwrap(), &marks, None)
         };
         assert_eq!(told(0.0, &[6]), None);
+        // Of 1.5 px all together lie less than 1 px off.
         for k in 0..12 {
-            for off in [30.0, 150.0] {
+            for off in [1.5, 30.0, 150.0] {
                 let words = told(off, &[k]).unwrap();
-                let name = format!("without the {}. of the list, {off:.0}", k + 1);
+                let name = format!("without the {}. of the list, {off}", k + 1);
                 assert!(words.contains(&name), "{words}");
             }
         }

@@ -133,6 +133,8 @@ pub struct PhotonTransferFit {
     pub gain_error: f64,
     /// Standard error of σ², counts².
     pub read_variance_error: f64,
+    /// Covariance of both, counts³.
+    pub covariance: f64,
     /// Groups of pixels of like light that the line was fitted to.
     pub groups: usize,
     /// Sum of their squared deviations in standard errors.
@@ -212,7 +214,8 @@ pub fn photon_transfer(
         read_variance: mean,
         has_offset,
     };
-    let mut errors = [0.0; 2];
+    // Variances of gain and σ², and their covariance.
+    let mut errors = [0.0; 3];
     for _ in 0..ROUNDS {
         (noise, errors) = line(&groups, noise, LEAST * mean);
     }
@@ -229,7 +232,7 @@ pub fn photon_transfer(
     let p = chi_square_sf(chi2, dof);
     // Off a line by more than chance, groups tell its errors by their scatter.
     if p < FITS {
-        errors = errors.map(|error| error * (chi2 / dof).sqrt());
+        errors = errors.map(|error| error * (chi2 / dof));
     }
     let found = [noise.gain, noise.read_variance];
     if found == [0.0; 2] || found.iter().any(|x| !x.is_finite()) || !chi2.is_finite() {
@@ -240,13 +243,35 @@ pub fn photon_transfer(
     }
     Ok(PhotonTransferFit {
         noise,
-        gain_error: errors[0],
-        read_variance_error: errors[1],
+        gain_error: errors[0].sqrt(),
+        read_variance_error: errors[1].sqrt(),
+        covariance: errors[2],
         groups: groups.len(),
         chi2,
         p,
         largest_deviation: deviations.iter().map(|d| d[1].abs()).fold(0.0, f64::max),
     })
+}
+
+impl PhotonTransferFit {
+    /// How well the line knows the variance of one photograph of this light, counts: the variance
+    /// of that over its square, (s² var g + 2 s cov + var σ²)/(g s + σ² + LSB²/12)². Infinite where
+    /// the line has none, or no gain is known.
+    pub(super) fn unknown(&self, light: f64, rounding: f64) -> f64 {
+        let CameraNoise {
+            gain,
+            read_variance,
+            ..
+        } = self.noise;
+        let due = gain * light + read_variance + rounding;
+        let [g, r] = [self.gain_error, self.read_variance_error];
+        let off = g * g * light * light + 2.0 * light * self.covariance + r * r;
+        if due > 0.0 && off.is_finite() {
+            off.max(0.0) / (due * due)
+        } else {
+            f64::INFINITY
+        }
+    }
 }
 
 /// The variance of a group by the line, at least `least`, counts².
@@ -269,9 +294,9 @@ fn group(pixels: &[Repeated]) -> Repeated {
 }
 
 /// The weighted line, with weights 1/variance of each group's variance by the line `before`; a
-/// negative gain or read noise becomes 0, but for an offset's. Returns it with the standard errors
-/// of both.
-fn line(groups: &[Repeated], before: CameraNoise, least: f64) -> (CameraNoise, [f64; 2]) {
+/// negative gain or read noise becomes 0, but for an offset's. Returns it with the variances of
+/// both and their covariance.
+fn line(groups: &[Repeated], before: CameraNoise, least: f64) -> (CameraNoise, [f64; 3]) {
     let [mut w, mut x, mut y, mut xx, mut xy] = [0.0; 5];
     for g in groups {
         let due = due(g, before, least);
@@ -291,7 +316,7 @@ fn line(groups: &[Repeated], before: CameraNoise, least: f64) -> (CameraNoise, [
     };
     // Groups of one light say nothing of the gain.
     if determinant <= 1e-12 * w * xx {
-        return (level(y / w), [f64::INFINITY, (1.0 / w).sqrt()]);
+        return (level(y / w), [f64::INFINITY, 1.0 / w, 0.0]);
     }
     let (gain, read) = (
         (w * xy - x * y) / determinant,
@@ -310,7 +335,7 @@ fn line(groups: &[Repeated], before: CameraNoise, least: f64) -> (CameraNoise, [
             ..before
         },
     };
-    (noise, [(w / determinant).sqrt(), (xx / determinant).sqrt()])
+    (noise, [w, xx, -x].map(|own| own / determinant))
 }
 
 #[cfg(test)]

@@ -175,6 +175,18 @@ pub(super) fn flickers([own, of_mean]: [f64; 2]) -> String {
     )
 }
 
+/// That repeats tell the variances of the entries to no more than `unknown`, relative, squared.
+pub(super) fn extrapolated(unknown: f64) -> String {
+    let known = if unknown.is_finite() {
+        format!("to {} % of itself only", figure(100.0 * unknown.sqrt(), 2))
+    } else {
+        "not at all".to_owned()
+    };
+    format!(
+        "so few repeats, or repeats of so little different light, tell the variance of the other entries {known}: there is NO standard error; take two photographs of every spot, or dark frames, or give `noise`"
+    )
+}
+
 /// That repeats scatter by `ratio` times the variance that is stated.
 pub(super) fn misstated(ratio: f64) -> String {
     let (times, which) = if ratio > 1.0 {

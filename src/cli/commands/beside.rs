@@ -192,7 +192,10 @@ pub(super) fn certainty(origin: &Origin, background: bool) -> Certainty {
         Some(plan) => Certainty::of(plan),
         None => {
             let shared = origin.shares_by_pixel() && !background;
-            Certainty::new(Errors::of_photographs(shared), None)
+            Certainty {
+                unknown: origin.noise_unknown(),
+                ..Certainty::new(Errors::of_photographs(shared), None)
+            }
         }
     }
 }

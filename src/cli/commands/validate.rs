@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::beside::{Beside, PhotographSize};
+use super::beside::{Beside, PhotographSize, certainty};
 use super::mask::{read_mask, refuse_clipped};
 use crate::cli::args::ValidateArgs;
 use crate::cli::console::Console;
@@ -15,7 +15,7 @@ use crate::film::{self, Channel, Frame};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{Against, Agreement, Errors, Measured, Test, validate};
+use crate::lab::{Against, Agreement, Measured, Test, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
@@ -117,10 +117,11 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 test: match record.origin.plan() {
                     Some(plan) => settings::test(&args.test, plan, console)?,
                     None => {
-                        // A background takes what all spots of a pixel share.
-                        let shared = record.origin.shares_by_pixel() && !args.beside.background;
-                        let errors = Errors::of_photographs(shared);
-                        settings::test_of_matrix(&args.test, errors, None)?
+                        let known = certainty(&record.origin, args.beside.background);
+                        Test {
+                            known,
+                            ..settings::test_of_matrix(&args.test, known.errors, None)?
+                        }
                     }
                 },
                 scene: match other {

@@ -20,6 +20,7 @@ fn imported(scene: &Scene) -> Record {
         settings: "all".to_owned(),
         flux_unit: "counts".to_owned(),
         shares_by_pixel: false,
+        noise_unknown: 0.0,
         frame_gain: None,
         sources: Vec::new(),
     };

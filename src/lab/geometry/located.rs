@@ -23,6 +23,7 @@ mod mistaken;
 mod order;
 mod picture;
 mod place;
+mod search;
 
 #[cfg(test)]
 mod tests;
@@ -39,7 +40,7 @@ use crate::lab::comparison::misplaced::{self, Misplaced};
 use crate::lab::comparison::validation::Integration;
 use crate::lab::error::LabError;
 use crate::lab::problem::inverted;
-use crate::lab::uncertainty::unexplained::Unexplained;
+use crate::lab::uncertainty::unexplained::{Photographs, Unexplained};
 use crate::model::{Effort, ElementGrid, Kernel, MatrixModel, Occlusion};
 use crate::scene::Scene;
 use crate::transport::Control;
@@ -47,14 +48,8 @@ use found::Picture;
 use frames::{Seen, Sides, TermsOf};
 use mistaken::{Rearranged, likeliest};
 use picture::Pictured;
-use place::{Lengths, Place, frames_of, parabola};
-
-/// Sizes of the second search, ± 1½ steps of the first, and of each further one, until a step is no
-/// more than the error by the curvature: the parabola is the likelihood's within its width only.
-const FINE: usize = 9;
-const AROUND: f64 = 1.5;
-/// Searches at most: the last step is 1e-5 of the first.
-const SEARCHES: usize = 12;
+use place::{Lengths, Place, frames_of};
+use search::{FINE, Search, Stretch, not_told};
 
 /// Why a shift is not looked for that only moves the picture.
 const WITHIN_ITS_PLANE: LabError = LabError::Unsuited(
@@ -165,28 +160,17 @@ impl LocatedPlan {
                 "the scene allows no place between these two; an angle needs a hinge, and there is none where hidden surface and wall are parallel",
             ));
         }
-        let first = place::best(coarse.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
-        let mut step = (self.range[1] - self.range[0]) / (self.steps - 1) as f64;
-        let mut middle = coarse[first].size;
-        let mut searches: Vec<Vec<Place>> = Vec::new();
-        let peak = loop {
-            let around = [middle - AROUND * step, middle + AROUND * step];
-            let within = around.map(|t| t.clamp(self.range[0], self.range[1]));
-            let fine = places(within, FINE, true)?;
-            let at = place::best(fine.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
-            let peak = parabola(&fine, Place::log_likelihood);
-            let own = (within[1] - within[0]) / (FINE - 1) as f64;
-            let is_fine = peak.is_some_and(|peak| own <= peak.stderr);
-            middle = fine[at].size;
-            searches.push(fine);
-            // At an end of the range there is no peak.
-            let is_end = self.range.contains(&middle);
-            if is_fine || is_end || searches.len() == SEARCHES {
-                break peak;
-            }
-            // Where the likeliest is the last of these, those beyond it are next.
-            step = peak.map_or(step, |_| own);
+        let search = Search {
+            range: self.range,
+            step: (self.range[1] - self.range[0]) / (self.steps - 1) as f64,
+            places: &places,
         };
+        let (found, others) = search.likeliest(&coarse)?;
+        let Stretch {
+            searches,
+            peak,
+            step,
+        } = found;
         // Where a frame matters so much that without it the peak is far, a wider search is needed.
         let by_frames = searches
             .iter()
@@ -198,7 +182,12 @@ impl LocatedPlan {
             }
             found => found,
         };
-        let all = || coarse.iter().chain(searches.iter().flatten());
+        let all = || {
+            coarse
+                .iter()
+                .chain(searches.iter().flatten())
+                .chain(&others)
+        };
         let best = all().max_by(|a, b| a.log_likelihood().total_cmp(&b.log_likelihood()));
         let best = best.ok_or(LabError::DARK)?;
         let log_likelihood = best.log_likelihood();
@@ -211,6 +200,8 @@ impl LocatedPlan {
         let at = (best.size, nearby);
         let light_left_out = self.light_left_out((scene, altered), at, seen, &lengths)?;
         let fit = self.fit(&there, seen, &lengths)?;
+        let errors = [peak.map(|peak| peak.stderr), by_frames];
+        let elsewhere = not_told(log_likelihood, &others, errors);
         let mut curve: Vec<&Place> = all().collect();
         curve.sort_by(|a, b| a.size.total_cmp(&b.size));
         let likelihood = |p: &&Place| Likelihood {
@@ -231,6 +222,7 @@ impl LocatedPlan {
                 .next()
                 .map_or([0.0; 3], |(_, s)| s.shape.at([0.5; 2]).position.to_array()),
             curve: curve.iter().map(likelihood).collect(),
+            elsewhere: elsewhere.map(|at| likelihood(&at)).collect(),
             log_likelihood,
             noise: best.fit.noise,
             elements: model.albedo.len(),
@@ -311,12 +303,18 @@ impl LocatedPlan {
             progress: &|_| (),
             ..control
         };
-        let own = other.of(&seen.photographs);
-        let found = again.locate(scene, &own.unexplained(), quiet)?;
-        let misfit = found.curve.iter().find(|at| at.log_likelihood == 0.0);
-        let misfit = misfit.map_or(f64::INFINITY, |at| at.misfit);
-        let mistaken = Mistaken::new(other.what, stated, [found.log_likelihood, misfit]);
-        Ok((order, mistaken))
+        let found = |own: Photographs| -> Result<[f64; 2], LabError> {
+            let found = again.locate(scene, &own.unexplained(), quiet)?;
+            let misfit = found.curve.iter().find(|at| at.log_likelihood == 0.0);
+            let misfit = misfit.map_or(f64::INFINITY, |at| at.misfit);
+            Ok([found.log_likelihood, misfit])
+        };
+        let stated = match other.left_over {
+            None => stated,
+            Some(_) => found(other.stated(&seen.photographs))?,
+        };
+        let turned = found(other.of(&seen.photographs))?;
+        Ok((order, Mistaken::new(other.what, stated, turned)))
     }
 }
 

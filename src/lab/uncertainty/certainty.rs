@@ -111,6 +111,9 @@ pub struct Certainty {
     pub follows_entries: bool,
     /// Where they are those of counts.
     pub counted: Option<Counted>,
+    /// Variance of their squares over the squares of these, where all are off alike: those of a
+    /// camera whose gain was estimated.
+    pub unknown: f64,
 }
 
 impl Certainty {
@@ -126,6 +129,7 @@ impl Certainty {
             pooled_from: None,
             follows_entries: false,
             counted: None,
+            unknown: 0.0,
         }
     }
 
@@ -182,13 +186,13 @@ impl Certainty {
 
     /// Degrees of freedom of the sum of so many squared deviates. Pooled errors share those of what
     /// was pooled: of ν each the mean variance is known to 2/(ν N) of itself; of counts the
-    /// variance of a square is 2 + κ:
+    /// variance of a square is 2 + κ; all may be off alike by u:
     ///
-    /// > Var Σz²/N = 2/N (1 + 1/ν),   2/N (1 + κ/2)
+    /// > Var Σz²/N = 2/N (1 + 1/ν),   2/N (1 + κ/2 + N u²/2)
     pub(in crate::lab) fn of_chi2(self, squares: f64) -> f64 {
         match self.pooled_from.map(|own| freedom(own.replicates)) {
             Some(own) => squares * own / (own + 1.0),
-            None => squares / (1.0 + 0.5 * self.excess()),
+            None => squares / (1.0 + 0.5 * (self.excess() + squares * self.unknown)),
         }
     }
 
@@ -295,7 +299,8 @@ mod tests {
 
     /// N squares over one variance that was pooled from ν degrees of freedom each have the law of
     /// Fisher of N and ν N: of 400 entries from 3 replicates 5 % lie where χ² says 5 %, to a tenth
-    /// of itself. As if the variance were known 9 % would.
+    /// of itself. As if the variance were known 9 % would. One variance of all that is known from ν
+    /// degrees of freedom, u² = 2/ν, is Fisher's of N and ν.
     #[test]
     fn squares_over_a_pooled_variance_follow_fishers_law() {
         let pooled = Certainty {
@@ -307,8 +312,17 @@ mod tests {
             }),
             ..Certainty::STATED
         };
-        let (entries, nu) = (400.0, 2.0);
-        for (known, least, most) in [(pooled, 0.045, 0.055), (Certainty::STATED, 0.08, 0.1)] {
+        let camera = Certainty {
+            unknown: 2.0 / 800.0,
+            ..Certainty::STATED
+        };
+        let entries = 400.0;
+        for (known, nu, least, most) in [
+            (pooled, 2.0, 0.045, 0.055),
+            (camera, 2.0, 0.045, 0.055),
+            (Certainty::STATED, 2.0, 0.08, 0.1),
+            (camera.or(None), 0.5, 0.08, 0.12),
+        ] {
             let dof = known.of_chi2(entries);
             // χ²/dof that is exceeded in 5 %.
             let [mut low, mut high] = [1.0, 2.0];

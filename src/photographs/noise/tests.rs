@@ -83,6 +83,45 @@ fn gain_and_read_noise_come_back() {
     assert!(photon_transfer(still.collect(), false).is_err());
 }
 
+/// Gain 0.5 and 20 counts² of read noise, pairs of photographs of 2048 pixels, 100 to 300 counts: over
+/// 60 draws what the line says of 0, 200 and 900 counts scatters as much as it says itself.
+#[test]
+fn the_line_says_how_well_it_knows_a_variance() {
+    let lights = [0.0, 200.0, 900.0];
+    let [mut scatter, mut stated] = [[0.0; 3]; 2];
+    for draw in 0..60 {
+        let mut stream = stream(draw);
+        let of = |k: u32| {
+            let signal = 100.0 + 200.0 * f64::from(k) / 2048.0;
+            let normal = stream.normal();
+            Repeated {
+                signal,
+                beside: signal,
+                variance: (0.5 * signal + 20.0) * normal * normal,
+                rounding: 0.0,
+                freedom: 1.0,
+            }
+        };
+        let fit = photon_transfer((0..2048).map(of).collect(), true).unwrap();
+        for (k, light) in lights.into_iter().enumerate() {
+            let found = fit.noise.gain * light + fit.noise.read_variance;
+            let off = found / (0.5 * light + 20.0) - 1.0;
+            scatter[k] += off * off;
+            stated[k] += fit.unknown(light, 0.0) * (off + 1.0) * (off + 1.0);
+        }
+    }
+    for (scatter, stated) in scatter.into_iter().zip(stated) {
+        assert!(
+            (0.5..1.7).contains(&(scatter / stated)),
+            "{scatter} {stated}"
+        );
+    }
+    assert!(
+        stated[1] < 0.2 * stated[2] && stated[1] < 0.2 * stated[0],
+        "{stated:?}"
+    );
+}
+
 /// An offset of 100 counts in the light, for want of dark frames: 4 − 0.5·100 at light 0. The gain
 /// is 0.5 still, the line fits, and the variance of a photograph is the same as with dark frames.
 #[test]

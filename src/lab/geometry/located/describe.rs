@@ -16,12 +16,14 @@ use crate::num::digits::figure;
 const FLAT: f64 = 1e-9;
 
 impl Located {
-    /// Whether the largest likelihood lies within the range, the stated noise does not refute what
-    /// is there, and the order of the spots is neither by chance nor mistaken.
+    /// Whether the largest likelihood lies within the range and no other peak is nearly as likely,
+    /// the stated noise does not refute what is there, and the order of the spots is neither by
+    /// chance nor mistaken.
     pub fn is_found(&self) -> bool {
         let by_chance = self.order.and_then(|order| order.is_by_chance());
         let is_in_order = by_chance != Some(true) && self.mistaken.is_none();
-        self.size.is_some() && self.refuted().is_none() && is_in_order
+        let is_alone = self.size.is_some() && self.elsewhere.is_empty();
+        is_alone && self.refuted().is_none() && is_in_order
     }
 
     /// The fit, where the stated noise refutes it.
@@ -65,9 +67,30 @@ impl Located {
         });
         format!(
             "{refuted}{}: {} {error} from where the scene has it; the middle of the hidden surface \
-             is then at ({x}, {y}, {z}).",
+             is then at ({x}, {y}, {z}).{}",
             self.what,
             figure(size, 3),
+            self.or_elsewhere()
+        )
+    }
+
+    /// Places that are not told from this one.
+    fn or_elsewhere(&self) -> String {
+        let each: Vec<String> = self
+            .elsewhere
+            .iter()
+            .map(|at| {
+                let (size, off) = (figure(at.size, 3), figure(-at.log_likelihood, 2));
+                format!("{size} {} (by e^{off} less likely)", self.unit)
+            })
+            .collect();
+        if each.is_empty() {
+            return String::new();
+        }
+        format!(
+            " The photographs do NOT TELL that from {}: narrow the range (--range LOW,HIGH) by what is \
+             known otherwise, or photograph by spots or a view that tell them apart.",
+            each.join(" or ")
         )
     }
 

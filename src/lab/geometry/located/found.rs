@@ -83,6 +83,8 @@ pub struct Located {
     pub middle: [f64; 3],
     /// Sizes tried, growing.
     pub curve: Vec<Likelihood>,
+    /// Peaks elsewhere that the photographs do not tell from the likeliest, at 1 %.
+    pub elsewhere: Vec<Likelihood>,
     /// ln p(Φ) of the likeliest size tried, up to what is the same in every order of the
     /// photographs.
     pub log_likelihood: f64,

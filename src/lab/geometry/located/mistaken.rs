@@ -3,7 +3,9 @@
 //! Against random orders one that is off by a single frame looks right: neighbouring spots light
 //! much the same. So frames that follow each other by a few places too early or too late, all or
 //! from one on, two frames exchanged, all backwards, and photographs that are mirrored or turned
-//! are tried too, at the stated place; with the likeliest of them the search is made again.
+//! are tried too, at the stated place; with the likeliest of them the search is made again. Where
+//! one was missed, what stands last is of no spot, and where one was taken twice its double is: both
+//! orders are then compared without it.
 
 use std::sync::Arc;
 
@@ -51,6 +53,8 @@ pub(super) struct Rearranged {
     pixels: Arc<[usize]>,
     /// Whether most frames follow each other as stated.
     is_of_few: bool,
+    /// The frame that is of no spot.
+    pub(super) left_over: Option<usize>,
 }
 
 impl Rearranged {
@@ -119,6 +123,7 @@ impl Rearranged {
             frames,
             pixels: pixels.into(),
             is_of_few: false,
+            left_over: None,
         });
         whole.chain(Self::of_few(frames, &own.into())).collect()
     }
@@ -127,21 +132,31 @@ impl Rearranged {
     /// places, or two are exchanged.
     fn of_few(frames: usize, pixels: &Arc<[usize]>) -> Vec<Self> {
         let mut all = Vec::new();
-        let mut push = |what: String, frames: Vec<usize>| {
+        let mut push = |what: String, frames: Vec<usize>, left_over: Option<usize>| {
             all.push(Self {
                 what,
                 frames,
                 pixels: Arc::clone(pixels),
                 is_of_few: true,
+                left_over,
             });
         };
-        for from in 1..frames - 1 {
+        for from in 0..frames - 1 {
             let tail = frames - from;
-            for (places, way) in [(1, "late"), (tail - 1, "early")] {
+            for (places, way, left_over, last) in [
+                (1, "late", from, "one before it twice"),
+                (
+                    tail - 1,
+                    "early",
+                    frames - 1,
+                    "one missed, the last of no spot",
+                ),
+            ] {
                 let moved = |l: usize| from + (l - from + places) % tail;
                 let order = (0..frames).map(|l| if l < from { l } else { moved(l) });
-                let what = format!("from about photograph {from} on each stands 1 too {way}");
-                push(what, order.collect());
+                let what =
+                    format!("from about photograph {from} on each stands 1 too {way} ({last})");
+                push(what, order.collect(), Some(left_over));
             }
         }
         let apart = if frames * (frames - 1) / 2 <= MOST_PAIRS {
@@ -153,30 +168,51 @@ impl Rearranged {
             for b in a + 1..frames.min(a + apart + 1) {
                 let mut order: Vec<usize> = (0..frames).collect();
                 order.swap(a, b);
-                push(format!("photographs {a} and {b} are exchanged"), order);
+                push(
+                    format!("photographs {a} and {b} are exchanged"),
+                    order,
+                    None,
+                );
             }
         }
         all
     }
 
-    /// The photographs in this order.
+    /// The photographs as stated, without the one that is of no spot.
+    pub(super) fn stated(&self, stated: &Unexplained<'_>) -> Photographs {
+        let all: Vec<usize> = (0..stated.phi.ncols()).collect();
+        let pixels: Vec<usize> = (0..stated.phi.nrows()).collect();
+        self.taken(stated, &pixels, &all)
+    }
+
+    /// The photographs in this order, without the one that is of no spot.
     pub(super) fn of(&self, stated: &Unexplained<'_>) -> Photographs {
-        let in_order = |m: &Matrix| {
-            Matrix::from_fn(m.nrows(), m.ncols(), |p, l| {
-                m[(self.pixels[p], self.frames[l])]
-            })
-        };
+        self.taken(stated, &self.pixels, &self.frames)
+    }
+
+    fn taken(&self, of: &Unexplained<'_>, pixels: &[usize], frames: &[usize]) -> Photographs {
+        let in_order =
+            |m: &Matrix| Matrix::from_fn(m.nrows(), m.ncols(), |p, l| m[(pixels[p], frames[l])]);
+        let mut left_out = of.left_out.map(in_order);
+        if let Some(frame) = self.left_over
+            && let Some(spot) = frames.iter().position(|l| *l == frame)
+        {
+            let [rows, columns] = [pixels.len(), frames.len()];
+            let all = left_out.get_or_insert_with(|| Matrix::zeros(rows, columns));
+            all.column_mut(spot).fill(1.0);
+        }
         Photographs {
-            phi: in_order(stated.phi),
-            stderr: stated.stderr.map(in_order),
-            certainty: stated.certainty,
-            left_out: stated.left_out.map(in_order),
-            patterns: stated.patterns.cloned(),
+            phi: in_order(of.phi),
+            stderr: of.stderr.map(in_order),
+            certainty: of.certainty,
+            left_out,
+            patterns: of.patterns.cloned(),
         }
     }
 }
 
-/// The likeliest order of `all` at the place of `terms`; none where that is the stated one.
+/// The likeliest order of `all` at the place of `terms`, against the stated one of the same frames;
+/// none where that is the likeliest. Light that all frames share is that of all of them.
 pub(super) fn likeliest(
     (seen, sides): (Seen<'_>, &Sides<'_>),
     terms: TermsOf<'_>,
@@ -184,11 +220,12 @@ pub(super) fn likeliest(
     all: Vec<Rearranged>,
 ) -> Result<Option<Rearranged>, LabError> {
     // ln p and the misfit.
-    let fit = |sides: &Sides<'_>, frames: &[usize]| -> Result<[f64; 2], LabError> {
-        let lit: Vec<(usize, usize)> = frames.iter().copied().zip(0..).collect();
+    let fit = |sides: &Sides<'_>, frames: &[usize], out: Option<usize>| {
+        let lit = frames.iter().copied().zip(0..);
+        let lit: Vec<(usize, usize)> = lit.filter(|(frame, _)| Some(*frame) != out).collect();
         let found = Fit::new(&sides.lit(&lit, terms), root)?;
         let dark = [f64::NEG_INFINITY, f64::INFINITY];
-        Ok(found.map_or(dark, |fit| [fit.log_likelihood, fit.misfit]))
+        Ok::<_, LabError>(found.map_or(dark, |fit| [fit.log_likelihood, fit.misfit]))
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
     let found = all.par_iter().map(|order| {
@@ -201,17 +238,19 @@ pub(super) fn likeliest(
                 photographs: own.unexplained(),
                 common: common.as_ref(),
             };
-            fit(&Sides::new(turned, terms.camera)?, &stated)
+            let found = fit(&Sides::new(turned, terms.camera)?, &stated, None)?;
+            Ok([found, fit(sides, &stated, None)?])
         } else {
-            fit(sides, &order.frames)
+            let out = order.left_over.filter(|_| seen.common.is_none());
+            Ok([fit(sides, &order.frames, out)?, fit(sides, &stated, out)?])
         }
     });
-    let found: Vec<[f64; 2]> = found.collect::<Result<_, _>>()?;
-    let [own, left] = fit(sides, &stated)?;
-    let mut best = (own, None);
-    for ([found, misfit], order) in found.into_iter().zip(all) {
-        if found > best.0 && (!order.is_of_few || misfit < FEW_LESS * left) {
-            best = (found, Some(order));
+    let found: Vec<[[f64; 2]; 2]> = found.collect::<Result<_, LabError>>()?;
+    let mut best = (0.0, None);
+    for ([found, own], order) in found.into_iter().zip(all) {
+        let more = found[0] - own[0];
+        if more > best.0 && (!order.is_of_few || found[1] < FEW_LESS * own[1]) {
+            best = (more, Some(order));
         }
     }
     Ok(best.1)

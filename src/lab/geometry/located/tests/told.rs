@@ -1,8 +1,10 @@
 //! What is said of places that photographs do not tell, and of errors.
 
 use super::*;
+use crate::lab::comparison::misplaced;
 use crate::lab::finding::Describe;
 use crate::lab::uncertainty::certainty::Errors;
+use crate::scene::file::{Layout, SpotsTable};
 
 /// A shift within the plane of a flat surface moves its picture: what photographs do not tell from
 /// another picture is refused.
@@ -121,5 +123,58 @@ fn errors_that_hang_together_are_told() {
         let notes = found.describe().notes.concat();
         let is_shared = errors != Errors::Independent;
         assert_eq!(notes.contains("HANG TOGETHER"), is_shared, "{notes}");
+    }
+}
+
+/// Spots, view and camera on the line x = 5, about which the hidden surface is symmetric: turned to
+/// the left it makes the photographs that it makes turned to the right, and both are told; where the
+/// range holds one alone, that is found.
+#[test]
+fn places_that_make_the_same_photographs_are_told() {
+    let mut file = SceneFile::default();
+    let laser = file.laser.as_mut().unwrap();
+    laser.position[0] = 5.0;
+    laser.spots = SpotsTable {
+        layout: Layout::List,
+        points: Some((0..16).map(|k| [5.0, 1.2 + 0.48 * f64::from(k)]).collect()),
+        ..SpotsTable::default()
+    };
+    file.camera.position[0] = 5.0;
+    file.camera.view.x = [3.5, 6.5];
+    file.camera.pixels = [1, 12];
+    let scene = Scene::new(&file, None).unwrap();
+    let yaw = misplaced::ALL.iter().find(|m| m.name == "yaw of S2");
+    let plan = |range: [f64; 2]| LocatedPlan {
+        what: "yaw",
+        steps: 13,
+        elements: Some([1, 3]),
+        ..by_centres(range, 0)
+    };
+    for turned in [12.0, -12.0] {
+        let truth = yaw.unwrap().apply(&scene, turned).unwrap();
+        let clean = plan([0.0; 2])
+            .model(&truth)
+            .unwrap()
+            .phi_of(&[0.8, 0.3, 0.6]);
+        let stderr = clean.map(|_| 2e-3 * clean.mean());
+        let phi = &clean + noise(clean.nrows(), clean.ncols(), 4).component_mul(&stderr);
+        let both = located(&scene, &phi, &stderr, plan([-20.0, 20.0]));
+        let size = both.size.unwrap();
+        let [other] = both.elsewhere[..] else {
+            panic!("{:?}", both.elsewhere);
+        };
+        assert!(
+            (size + other.size).abs() < 1.0 && size.abs() > 9.0,
+            "{size} {other:?}"
+        );
+        assert!(!both.is_found() && both.describe().sentence.contains("do NOT TELL"));
+        let range = [turned.min(0.0) * 2.0, turned.max(0.0) * 2.0];
+        let one = located(&scene, &phi, &stderr, plan(range));
+        let off = (one.size.unwrap() - turned) / one.stderr().unwrap();
+        assert!(
+            one.is_found() && off.abs() < 3.0,
+            "{off} {:?}",
+            one.elsewhere
+        );
     }
 }
