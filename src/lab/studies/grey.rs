@@ -47,14 +47,19 @@ impl<'a> Grey<'a> {
         if self.is_dark() {
             return Ok(vec![0; LEVELS.len()]);
         }
-        let stderr = self.noise.stderrs(&self.phi, 1.0);
+        // By the least noise: what is lost below a larger one would be counted out.
+        let least = LEVELS[LEVELS.len() - 1];
+        let stderr = self.noise.stderrs(&self.phi, least);
         let problem = problem(self.model, &self.phi, Some(&stderr))?;
         let by_entry = Options {
             weighting: WeightRule::Entries,
             ..Options::default()
         };
         let sigma = picard_joint(&problem, &by_entry)?.sigma;
-        let above = |level: &f64| sigma.iter().filter(|s| **s * BEFORE > *level).count();
+        let above = |level: &f64| {
+            let signals = sigma.iter().map(|s| s * BEFORE * least);
+            signals.filter(|signal| signal > level).count()
+        };
         Ok(LEVELS.iter().map(above).collect())
     }
 
@@ -81,4 +86,34 @@ pub(super) fn columns() -> impl Iterator<Item = Column> {
     };
     let risk = Column::number("risk", "risk", "", 2);
     LEVELS.iter().map(above).chain([risk])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::linalg::svd;
+
+    /// Sides whose light hangs together over neighbours, so that signals fall over nine decades:
+    /// directions above each level are those of the singular values of all rows written out.
+    #[test]
+    fn directions_are_those_of_all_rows() {
+        let n = 12;
+        let near = |a: f64, b: f64| libm::exp(-0.5 * (a - b) * (a - b) / 4.0);
+        let camera = Matrix::from_fn(20, n, |p, j| near(0.7 * p as f64, j as f64));
+        let laser = Matrix::from_fn(n, 9, |j, l| 1.0 + near(1.3 * l as f64, j as f64));
+        let model = MatrixModel::of_sides(camera, laser, [n, 1]).unwrap();
+        for noise in [NoiseLaw::Relative, NoiseLaw::Read] {
+            let grey = Grey::new(&model, noise);
+            let stderr = noise.stderrs(&grey.phi, 1.0);
+            let rows = Matrix::from_fn(20 * 9, n, |row, j| {
+                let (p, l) = (row % 20, row / 20);
+                model.camera_side[(p, j)] * model.laser_side[(j, l)] / stderr[(p, l)]
+            });
+            let sigma = svd(&rows).unwrap().sigma;
+            let above = |level: &f64| sigma.iter().filter(|s| 0.5 * **s > *level).count();
+            let expected: Vec<usize> = LEVELS.iter().map(above).collect();
+            assert_eq!(grey.directions().unwrap(), expected, "{sigma}");
+            assert!(expected[3] > expected[0] && expected[3] > 6, "{expected:?}");
+        }
+    }
 }

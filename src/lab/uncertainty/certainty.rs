@@ -321,7 +321,6 @@ mod tests {
             (pooled, 2.0, 0.045, 0.055),
             (camera, 2.0, 0.045, 0.055),
             (Certainty::STATED, 2.0, 0.08, 0.1),
-            (camera.or(None), 0.5, 0.08, 0.12),
         ] {
             let dof = known.of_chi2(entries);
             // χ²/dof that is exceeded in 5 %.

@@ -172,7 +172,7 @@ impl Layouts {
                 );
             }
             format!(
-                "{spots} spots where they say most leave {risk}, and no layout of {candidates} candidates leaves less than {bound}"
+                "{spots} spots, placed by exchanges of one at a time, leave {risk}, and no layout of {candidates} candidates leaves less than {bound}"
             )
         });
         let said: Vec<String> = own.into_iter().chain(best).collect();
@@ -186,7 +186,7 @@ impl Describe for Layouts {
         let o = &self.optimum;
         let mut notes = vec![
             format!(
-                "The prior is {}, about ½. The bound is that of the best weights of the candidates ({} steps; risk {}), by duality; on the grid the layout leaves {} after {} exchanges, then its spots move off the grid, which the bound does not hold for.",
+                "The prior is {}, about ½. The bound is that of the best weights of the candidates ({} steps; risk {}), by duality; on the grid the layout leaves {} after {} exchanges of single spots, none of which is left that gains; where its spots then move off the grid (--refine), the bound does not hold.",
                 self.prior,
                 o.steps,
                 figure(o.relaxed, 4),

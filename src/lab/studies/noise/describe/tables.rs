@@ -36,8 +36,10 @@ impl NoiseStudy {
         );
         Table::new(caption, columns, self.curves.iter().map(row)).noted(format!(
             "{} lost: below at the quietest level already; kept: at no level below; unknown: before that some \
-             draw gave nothing, or no mean is known (of one draw, or above 1.1). `a to b`: between these two levels, more than a decade \
-             (3 bits) apart; study more levels between them (--noise).",
+             draw gave nothing, or no mean is known (of one draw, above 1.1, to less than a tenth, or of sums W + B that \
+             spread by more than a tenth). `a to b`: between these two levels, more than a decade (3 bits) apart. Others \
+             are interpolated between two levels: the MTF of a method that drops directions (tsvd) steps between them, \
+             and the scatter of the draws does not tell it. Study more levels there (--noise).",
             label.procedure
         ))
     }
