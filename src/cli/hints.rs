@@ -141,6 +141,12 @@ fn is_scene(word: &str) -> bool {
     word.ends_with(".toml") || builtins().iter().any(|b| b.name == word)
 }
 
+/// The options that a command cannot do without, with their dashes.
+fn required(command: &Command) -> impl Iterator<Item = String> + '_ {
+    let needed = command.get_arguments().filter(|a| a.is_required_set());
+    needed.filter_map(|a| Some(format!("--{}", a.get_long()?)))
+}
+
 /// What to do about the word `given` where no more words are taken.
 fn stray(names: &[String], command: &Command, given: &str, words: &[String]) -> String {
     let own = names.join(" ");
@@ -164,6 +170,10 @@ fn stray(names: &[String], command: &Command, given: &str, words: &[String]) -> 
     }
     if given == "D" {
         return "write it with a dash: -D KEY=VALUE".to_owned();
+    }
+    // A value whose option was left out.
+    if let Some(option) = required(command).find(|name| !words.iter().any(|w| w == name)) {
+        return format!("write it behind its option: {option} {given}");
     }
     let takes_folder = command.get_arguments().any(|a| a.get_id() == "dir");
     let first = words
@@ -199,6 +209,13 @@ fn no_command(root: &Command, word: &str, names: &[String]) -> Option<String> {
     }
     if STUDIES.iter().any(|study| study.name == word) {
         return Some(format!("that is a study: `phicam study {word}`"));
+    }
+    if word == "guide" {
+        return Some(
+            "its pages are in the sources, `src/cli/guide`, and behind links of the README; here \
+             `phicam help COMMAND` and `phicam help scene` tell most"
+                .to_owned(),
+        );
     }
     let scene = root.find_subcommand("scene")?;
     let inner = scene
@@ -241,5 +258,6 @@ fn missing(names: &[String], command: &Command, error: &Error) -> Option<String>
             "name a folder that `phicam run` has written: `{own} out`"
         ));
     }
-    None
+    let option = required(command).find(|name| lacks(name));
+    option.map(|name| format!("give {name} too; `{own} --help` says what it is"))
 }

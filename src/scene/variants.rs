@@ -171,11 +171,14 @@ impl Scene {
             Some(i) => {
                 let name = &self.surfaces[i].name;
                 let cause = format!("the albedo of `{name}` is unknown, so its light is too");
-                let cure = "give it a number or a picture, of photographs in a scene for `validate --against`; `model` and `recover` do without";
                 let key = match self.surfaces[i].shining() {
                     Some(_) => "shining",
                     None => "lambertian",
                 };
+                let cure = format!(
+                    "give it a number or a picture: -D surface.{name}.material.{key}=0.5, of photographs in a scene for `validate \
+                     --against`; `model` and `recover` do without"
+                );
                 let at = keys!["surface", i, "material", key];
                 Err(self.locate(Fault::new(at, cause, cure)))
             }

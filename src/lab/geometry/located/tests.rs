@@ -353,6 +353,18 @@ fn an_order_that_is_easily_mistaken_is_told() {
         l => l,
     });
     assert_eq!(exchanged, "photographs 2 and 7 are exchanged");
+    // One missed, and what stands last taken twice or dark; one taken twice, and the last missed.
+    for missed in [2, 5, 9] {
+        let early = frames(&|l| if l < missed { l } else { (l + 1).min(n - 1) });
+        assert!(
+            early.contains(&format!("photograph {missed} on each stands 1 too early")),
+            "{early}"
+        );
+        let late = frames(&|l| if l <= missed { l } else { l - 1 });
+        let words =
+            [missed, missed + 1].map(|k| format!("photograph {k} on each stands 1 too late"));
+        assert!(words.iter().any(|words| late.contains(words)), "{late}");
+    }
 }
 
 /// Of photographs that tell the place to a hundredth of a step it is found there: of 8 draws none
