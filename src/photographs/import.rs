@@ -19,10 +19,11 @@ use super::warnings::{
     bent, by_own_light, colourless, copied, extrapolated, flickers, little_left, misstated,
     no_light, roughly, rounded, shared, unsaid,
 };
+use crate::num::digits::figure;
 use crate::scene::{Scene, SceneError};
 
-/// Variance of the entries' variances over their squares above which no standard error is stated: it
-/// would be known to a sixth of itself.
+/// Variance of the entries' variances over their squares above which no standard error is stated:
+/// it would be known to a sixth of itself.
 const MOST_UNKNOWN: f64 = 0.1;
 
 /// The scene with the spots whose positions the set lists, if it does.
@@ -164,8 +165,8 @@ pub fn import(
     if columns.zeros > 0.0 {
         let all = columns.photographs * shots.size[0] * shots.size[1];
         warnings.push(format!(
-            "{:.2} % of the stored values are 0: what would be below is cut off, so that dark pixels are too bright on average; raise the camera's offset",
-            100.0 * columns.zeros / all as f64
+            "{} % of the stored values are 0: what would be below is cut off, so that dark pixels are too bright on average; raise the camera's offset",
+            figure(100.0 * columns.zeros / all as f64, 2)
         ));
     }
     warnings.extend(by_own_light(columns.by_own_light));

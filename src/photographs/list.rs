@@ -25,25 +25,30 @@ pub(super) fn tables(
     }
 }
 
-/// The lines of a CSV file as tables.
+/// The lines of a CSV file as tables. Columns are separated by commas, or, where the line of their
+/// names has none, by semicolons or tabs: numbers may then have a decimal comma.
 pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, PhotographError> {
     let mut lines = text
         .lines()
         .enumerate()
         .map(|(k, line)| (k + 1, line.trim()))
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let cells = |line: &str| -> Vec<String> {
-        line.split(',')
-            .map(|c| c.trim().trim_matches('"').to_owned())
-            .collect()
-    };
     let (_, head) = lines.next().ok_or_else(|| {
         refused(
             format!("{name} is empty"),
             "give a line of column names first",
         )
     })?;
-    let head = cells(head.trim_start_matches('\u{feff}'));
+    let head = head.trim_start_matches('\u{feff}');
+    let others = [';', '\t'].into_iter().filter(|c| head.contains(*c));
+    let mut others = others.filter(|_| !head.contains(','));
+    let between = others.next().unwrap_or(',');
+    let cells = |line: &str| -> Vec<String> {
+        line.split(between)
+            .map(|c| c.trim().trim_matches('"').to_owned())
+            .collect()
+    };
+    let head = cells(head);
     let known = [
         "file",
         "spot",
@@ -54,14 +59,6 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
         "gain",
         "gain_error",
     ];
-    if let [only] = &head[..]
-        && let Some(other) = [';', '\t'].into_iter().find(|c| only.contains(*c))
-    {
-        return Err(refused(
-            format!("{name} separates its columns by {other:?}"),
-            "separate them by commas; numbers have a point",
-        ));
-    }
     if let Some(odd) = head.iter().find(|h| !known.contains(&h.as_str())) {
         return Err(refused(
             format!("{name} has a column `{odd}`"),
@@ -93,7 +90,9 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
         };
         let number_of = |key: &str| -> Result<Option<f64>, PhotographError> {
             let parse = |v: &str| {
-                v.parse::<f64>()
+                let point = v.replace(',', ".");
+                point
+                    .parse::<f64>()
                     .ok()
                     .filter(|x| x.is_finite())
                     .ok_or_else(|| {
@@ -212,6 +211,22 @@ mod tests {
         ] {
             let error = parsed("l.csv", text).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
+        }
+        for text in [
+            "file;x;y;exposure\na.png;0,1;-2;0.5\n",
+            "\u{feff}file\tx\ty\texposure\r\na.png\t0.1\t-2\t0,5\r\n",
+        ] {
+            let tables = parsed("l.csv", text).unwrap();
+            let [own] = &tables[..] else {
+                panic!("{tables:?}")
+            };
+            assert_eq!(
+                (own.position.as_deref(), own.exposure),
+                (Some(&[0.1, -2.0][..]), Some(0.5))
+            );
+        }
+        for text in ["file;x;y\na.png;1.000,5;2\n", "file;x,y\na.png;1,2\n"] {
+            assert!(parsed("l.csv", text).is_err(), "{text}");
         }
         let mixed = parsed("l.csv", "file,spot,x,y\na,1,,\nb,,1,2\n").unwrap();
         assert!(positions(&mixed).is_err());

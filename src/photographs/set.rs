@@ -25,7 +25,8 @@ pub struct Set {
     /// page of a file a photograph.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frames: Option<Files>,
-    /// In place of `frames`: a CSV file whose first line names its columns, of `file`, `spot` or
+    /// In place of `frames`: a CSV file (or with semicolons or tabs and decimal commas, as
+    /// spreadsheets write it) whose first line names its columns, of `file`, `spot` or
     /// `x` and `y`, `exposure`, `gain`, `gain_error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub list: Option<String>,

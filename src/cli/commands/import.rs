@@ -18,6 +18,7 @@ use crate::folder::{Origin, Photographs};
 use crate::jobs::need;
 use crate::lab::Errors;
 use crate::matrix::npy;
+use crate::num::digits::figure;
 use crate::photographs::set::{ChannelName, DarkTable, Files, Set};
 use crate::photographs::{ImportAccount, Imported, import, scene_of};
 use crate::report;
@@ -261,18 +262,23 @@ fn summary(account: &ImportAccount, has_noise: bool, dir: &Path) -> String {
                 let (read, error) = (noise.read_variance.sqrt(), line.read_variance_error);
                 // σ² is what the line tells: near 0 only up to where σ may be is known.
                 if noise.read_variance > error {
-                    format!("read noise {read:.3} ± {:.3} counts", 0.5 * error / read)
-                } else {
+                    let error = 0.5 * error / read;
                     format!(
-                        "read noise below {:.3} counts",
-                        (noise.read_variance + 2.0 * error).sqrt()
+                        "read noise {} ± {} counts",
+                        figure(read, 4),
+                        figure(error, 2)
                     )
+                } else {
+                    let most = (noise.read_variance + 2.0 * error).sqrt();
+                    format!("read noise below {} counts", figure(most, 3))
                 }
             };
             let _ = writeln!(
                 text,
-                "  noise, from repeats: gain {:.4} ± {:.4} counts, {read}; the line fits with probability {:.3}",
-                noise.gain, line.gain_error, line.p
+                "  noise, from repeats: gain {} ± {} counts, {read}; the line fits with probability {:.3}",
+                figure(noise.gain, 4),
+                figure(line.gain_error, 2),
+                line.p
             );
         }
         (Some(noise), None) => {

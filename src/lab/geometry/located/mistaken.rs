@@ -4,8 +4,8 @@
 //! much the same. So frames that follow each other by a few places too early or too late, all or
 //! from one on, two frames exchanged, all backwards, and photographs that are mirrored or turned
 //! are tried too, at the stated place; with the likeliest of them the search is made again. Where
-//! one was missed, what stands last is of no spot, and where one was taken twice its double is: both
-//! orders are then compared without it.
+//! one was missed, what stands last is of no spot, and where one was taken twice its double is:
+//! both orders are then compared without it.
 
 use std::sync::Arc;
 

@@ -5,8 +5,8 @@
 //!
 //! > ln p − ln p′ ≤ ½ χ²₁ · max(1, (σ_J/σ_L)²),   χ²₁ = 6.63,
 //!
-//! σ_J the error by leaving frames out, σ_L that by the curvature: where what is not explained is no
-//! independent noise, logarithms of likelihoods say too much by the square of their ratio.
+//! σ_J the error by leaving frames out, σ_L that by the curvature: where what is not explained is
+//! no independent noise, logarithms of likelihoods say too much by the square of their ratio.
 
 use super::place::{self, Peak, Place};
 use crate::lab::error::LabError;

@@ -127,8 +127,8 @@ fn errors_that_hang_together_are_told() {
 }
 
 /// Spots, view and camera on the line x = 5, about which the hidden surface is symmetric: turned to
-/// the left it makes the photographs that it makes turned to the right, and both are told; where the
-/// range holds one alone, that is found.
+/// the left it makes the photographs that it makes turned to the right, and both are told; where
+/// the range holds one alone, that is found.
 #[test]
 fn places_that_make_the_same_photographs_are_told() {
     let mut file = SceneFile::default();
