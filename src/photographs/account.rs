@@ -58,7 +58,7 @@ pub struct ImportAccount {
     /// of the photograph share: the standard errors of Φ leave it out.
     pub gains: Vec<(usize, f64, f64)>,
     /// Variance of the entries' variances over their squares, by the line that the noise was found
-    /// by, mean over the entries: all are off alike.
+    /// by, mean over the entries: all are off alike. Infinite where it tells none of some entry.
     pub unknown: f64,
     /// Part of the variance that is that of the dark frames, which all spots of a pixel share, mean
     /// over the entries.

@@ -170,7 +170,7 @@ fn one(
         settings: digest_of(&serde_json::to_vec(&(set, channel))?),
         flux_unit: account.unit.to_owned(),
         shares_by_pixel: errors != Errors::Independent,
-        noise_unknown: account.unknown,
+        noise_unknown: imported.stderr.as_ref().map_or(0.0, |_| account.unknown),
         frame_gain: account.frame_gain(),
         sources: account.files.clone(),
     };
