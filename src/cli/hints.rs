@@ -171,8 +171,11 @@ fn stray(names: &[String], command: &Command, given: &str, words: &[String]) -> 
     if given == "D" {
         return "write it with a dash: -D KEY=VALUE".to_owned();
     }
-    // A value whose option was left out.
-    if let Some(option) = required(command).find(|name| !words.iter().any(|w| w == name)) {
+    // A number whose option was left out.
+    let mut lacks = required(command).filter(|name| !words.iter().any(|word| word == name));
+    if given.parse::<f64>().is_ok()
+        && let Some(option) = lacks.next()
+    {
         return format!("write it behind its option: {option} {given}");
     }
     let takes_folder = command.get_arguments().any(|a| a.get_id() == "dir");
