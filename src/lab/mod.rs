@@ -184,7 +184,7 @@ pub use comparison::validation::{Against, Integration, Validation, validate};
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
 pub use geometry::calibrate::{
-    Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
+    AtEdge, Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
     Identified, Profile, Stage, Starts,
 };
 pub use geometry::light_left_out::LightLeftOut;

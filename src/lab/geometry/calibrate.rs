@@ -47,7 +47,8 @@
 //! coordinate of the plate: MTF 1.000 with the right and with the calibrated geometry, errors over
 //! stated 1.04, 0.96, 0.90 and 1.00, 1.07, 1.13, held 112 of 120
 //! (`tests/physics/calibrated_past.rs`). Where the plate cuts off the beam of a spot without a size
-//! its place has no slope, and the search may not end.
+//! its place has no slope, and the search may not end. Where the scene ends the search goes along its
+//! edge, and it is told which unknown that holds ([`edge`]).
 
 mod averaged;
 mod beforehand;
@@ -55,6 +56,7 @@ mod brightest;
 mod calibration;
 mod descent;
 mod describe;
+mod edge;
 mod elements;
 mod field;
 mod finish;
@@ -68,12 +70,14 @@ mod picture;
 mod posterior;
 mod profile;
 mod rule;
+mod step;
 #[cfg(test)]
 mod tests;
 
 pub use beforehand::Beforehand;
 pub use calibration::{Calibrated, Calibration, Starts};
 pub use descent::Stage;
+pub use edge::AtEdge;
 pub use elements::FinerElements;
 pub use free::Free;
 pub use identified::{Direction, Identified};
@@ -261,7 +265,8 @@ impl CalibrationPlan {
         }
     }
 
-    /// Where start k begins.
+    /// Where start k begins. Where there is no scene so far off, one unknown after the other is as
+    /// far off as it was drawn, or as far the other way, or not at all.
     fn start(&self, k: usize, problem: &Problem<'_>, sizes: &[f64]) -> Vec<f64> {
         let mut random = normal(self.seed.wrapping_add(k as u64));
         let count = problem.geometry.parameters.len();
@@ -273,15 +278,20 @@ impl CalibrationPlan {
             self.spread * problem.priors[j].unwrap_or(*size) * deviate
         };
         let far: Vec<f64> = sizes.iter().enumerate().map(of).collect();
-        // Where the scene does not allow it, half as far.
-        let mut share = 1.0;
-        loop {
-            let values: Vec<f64> = far.iter().map(|x| x * share).collect();
-            if share < 0.01 || problem.geometry.scene_at(&values).is_ok() {
-                return values;
-            }
-            share *= 0.5;
+        let geometry = &problem.geometry;
+        if geometry.refused(&far).is_none() {
+            return far;
         }
+        let mut start = vec![0.0; far.len()];
+        for (j, own) in far.iter().enumerate().take(count) {
+            for place in [*own, -own, 0.0] {
+                start[j] = place;
+                if geometry.refused(&start).is_none() {
+                    break;
+                }
+            }
+        }
+        start
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Beforehand, Direction, FinerElements, Identified, Profile, Stage};
+use super::{AtEdge, Beforehand, Direction, FinerElements, Identified, Profile, Stage};
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::lab::geometry::located::Grid;
 use crate::recovery::ErrorField;
@@ -137,6 +137,8 @@ pub struct Calibration {
     pub stages: Vec<Stage>,
     /// Whether the last stage ended by itself.
     pub is_settled: bool,
+    /// Unknowns that an edge of the scene holds there; their errors do not know it.
+    pub held: Vec<AtEdge>,
     /// The starts.
     pub starts: Starts,
     /// The picture, the mean over all priors by their evidence, as of `joint-gp` by this geometry;

@@ -6,6 +6,8 @@
 //!
 //! > (F + Λ + μ diag(F + Λ)) δ = −(slope + Λθ),   Λ = diag(1/σ_k²)
 //!
+//! as far as there is a scene ([`super::edge`]).
+//!
 //! Where the noise is not known the last one is what the likeliest picture leaves.
 
 use nalgebra::DVector;
@@ -13,12 +15,12 @@ use nalgebra::DVector;
 use super::geometry::{Geometry, Light};
 use super::picture::Prior;
 use super::posterior::{Seen, Slope, Value};
+use super::step::{damped, gain};
 use crate::lab::error::LabError;
 use crate::lab::geometry::common::Common;
 use crate::lab::geometry::normal::Normal;
 use crate::lab::uncertainty::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::num::linalg::Cholesky;
 use crate::num::statistics::median;
 use crate::transport::Control;
 
@@ -29,7 +31,7 @@ const STEP: f64 = 0.316_227_766_016_837_94;
 /// Steps at one noise.
 const MOST_STEPS: usize = 40;
 /// A step that is expected to gain less than this, or less than this of every error, is the last.
-const ENOUGH: f64 = 1e-4;
+pub(super) const ENOUGH: f64 = 1e-4;
 /// μ at first, and where nothing goes down any more.
 const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e9;
@@ -242,16 +244,17 @@ impl<'a> Problem<'a> {
             let information = self.information(&state.slope);
             let slope = self.whole_slope(&state);
             let here = state.value.cost + self.penalty(&state.values);
+            let free = vec![None; slope.len()];
+            let mut fixed = free.clone();
             let next = loop {
-                let Some(step) = damped(&information, &slope, damping) else {
+                if damping > MOST_DAMPING {
+                    break None;
+                }
+                let Some(step) = damped(&information, &slope, damping, &fixed) else {
                     damping *= 10.0;
-                    if damping > MOST_DAMPING {
-                        break None;
-                    }
                     continue;
                 };
-                let gain = -slope.dot(&step) - 0.5 * step.dot(&(&information * &step));
-                if gain < ENOUGH {
+                if gain(&information, &slope, &step) < ENOUGH {
                     break None;
                 }
                 let values: Vec<f64> = state.values.iter().zip(&step).map(|(x, d)| x + d).collect();
@@ -260,10 +263,11 @@ impl<'a> Problem<'a> {
                         damping = (0.1 * damping).max(1e-12);
                         break Some(values);
                     }
-                    _ => damping *= 10.0,
-                }
-                if damping > MOST_DAMPING {
-                    break None;
+                    None if self.geometry.fix(&state.values, &step, &mut fixed) => {}
+                    _ => {
+                        damping *= 10.0;
+                        fixed.clone_from(&free);
+                    }
                 }
             };
             match next {
@@ -304,13 +308,4 @@ pub(super) fn first(photographs: &Unexplained<'_>) -> f64 {
             .collect(),
     };
     median(relative).map_or(1.0, |noise| FIRST / noise)
-}
-
-/// The step of Levenberg and Marquardt; none where nothing changes with an unknown.
-fn damped(information: &Matrix, slope: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
-    let mut all = information.clone();
-    for k in 0..all.nrows() {
-        all[(k, k)] *= 1.0 + damping;
-    }
-    Some(-Cholesky::new(&all)?.solve(slope))
 }

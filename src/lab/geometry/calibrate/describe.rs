@@ -154,6 +154,7 @@ impl Calibration {
                 } else if self.asks_for_elements()
                     || self.shared.is_some()
                     || self.neighbours.is_some()
+                    || !self.held.is_empty()
                     || self.is_beyond()
                     || !self.by_pictures().is_empty()
                 {
@@ -275,6 +276,7 @@ impl Calibration {
         notes.extend([self.searched(), self.picture()]);
         let warnings = self.picture_warnings.iter();
         notes.extend(warnings.map(|warning| format!("Beware, of the picture: {warning}.")));
+        notes.extend(self.at_edges());
         notes.extend(self.beyond());
         notes.extend(self.light_beyond());
         notes.extend(self.even_light());
@@ -342,6 +344,7 @@ impl Describe for Calibration {
                 true if self.is_coarse()
                     || self.asks_for_elements()
                     || self.shared.is_some()
+                    || !self.held.is_empty()
                     || self.is_beyond() =>
                 {
                     Tone::Plain

@@ -82,7 +82,8 @@ impl CalibrationPlan {
         drop(columns);
         let scene = problem.geometry.scene;
         let names = self.names(problem);
-        let by_pictures = problem.by_pictures(best, &light)?;
+        let held = problem.held(best);
+        let by_pictures = problem.by_pictures(best, &light, &held)?;
         let finer = problem.finer(best, &covariance)?;
         let elements = problem.finer_elements(model, best, control)?;
         let is_integrated =
@@ -189,6 +190,7 @@ impl CalibrationPlan {
             length: best.prior.length,
             stages: stages.clone(),
             is_settled: best.is_settled,
+            held,
             starts,
             grids: grids.collect(),
             stderr_given: picture.given.iter().map(|x| x.sqrt()).collect(),

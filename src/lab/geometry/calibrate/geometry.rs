@@ -17,6 +17,8 @@ use crate::scene::{Parameter, Scene, Velocity};
 const OF_DISTANCE: f64 = 1e-3;
 const OF_TURN: f64 = 0.05;
 const OF_SPREAD: f64 = 1.0;
+/// Halvings of that step where the scene ends within it on both sides.
+const HALVINGS: u32 = 10;
 
 /// Change of the light by the last halving of elements, in noises of the photographs, with which
 /// the cells are fine enough before the last stage: what is left is a half to a fourth of it.
@@ -144,7 +146,8 @@ impl Geometry<'_> {
         })
     }
 
-    /// The central difference by parameter `k` about the values `own`.
+    /// The central difference by parameter `k` about the values `own`; where the scene ends on one
+    /// side the other one's, by a smaller step where it does on both, and 0 where nothing may move.
     fn difference(&self, own: &[f64], effort: Effort, k: usize) -> Result<Rate, LabError> {
         let p = &self.parameters[k];
         let step = if p.is_of_spread() {
@@ -154,16 +157,30 @@ impl Geometry<'_> {
         } else {
             OF_DISTANCE * distance(self.scene)
         };
-        let at = |sign: f64| -> Result<Terms, LabError> {
+        let moved = |by: f64| {
             let mut values = own.to_vec();
-            values[k] += sign * step;
-            let scene = self.scene.displaced(self.parameters, &values)?;
+            values[k] += by;
+            values
+        };
+        let open = |by: f64| {
+            if self.refused(&moved(by)).is_some() {
+                0.0
+            } else {
+                by
+            }
+        };
+        let mut shares = (0..HALVINGS).map(|halving| step * 0.5f64.powi(halving.cast_signed()));
+        let ends =
+            shares.find_map(|by| Some([open(by), open(-by)]).filter(|ends| *ends != [0.0; 2]));
+        let [more, less] = ends.unwrap_or_default();
+        let at = |by: f64| -> Result<Terms, LabError> {
+            let scene = self.scene_at(&moved(by))?;
             Ok(self.past(&scene, &[], effort)?.terms)
         };
         Ok(Rate::Difference {
-            more: at(1.0)?,
-            less: at(-1.0)?,
-            over: 2.0 * step,
+            more: at(more)?,
+            less: at(less)?,
+            over: ends.map_or(step, |_| more - less),
         })
     }
 }

@@ -13,6 +13,7 @@
 use nalgebra::DVector;
 
 use super::descent::{Problem, State};
+use super::edge::AtEdge;
 use super::geometry::Light;
 use super::picture::Prior;
 use crate::lab::error::LabError;
@@ -25,19 +26,23 @@ const EXCLUDED: f64 = 9.2;
 const STEP: f64 = 12.5;
 
 impl Problem<'_> {
-    /// The error of every unknown, by the light at the estimate.
+    /// The error of every unknown, by the light at the estimate. Of those that an edge of the scene
+    /// holds the slope that they have there is no other picture's.
     pub(super) fn by_pictures(
         &self,
         best: &State,
         light: &Light,
+        held: &[AtEdge],
     ) -> Result<DVector<f64>, LabError> {
         let normal = self.seen(best.factor).normal(light)?;
         let margin = EXCLUDED + STEP;
+        let own = self.whole_slope(best);
         let tried = Prior::plausible(self.pictures, &normal, self.is_scale_free, margin)?;
         let mut all: Vec<(f64, DVector<f64>)> = Vec::new();
         for prior in tried {
             let state = self.state_by((&best.values, best.factor), (light, &normal), prior)?;
-            let slope = self.whole_slope(&state);
+            let mut slope = self.whole_slope(&state);
+            held.iter().for_each(|h| slope[h.index] -= own[h.index]);
             let Some(information) = Cholesky::new(&self.information(&state.slope)) else {
                 continue;
             };

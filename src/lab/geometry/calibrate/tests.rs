@@ -3,6 +3,7 @@
 mod averaged;
 mod beforehand;
 mod common;
+mod edge;
 mod errors;
 mod estimates;
 mod light_left_out;

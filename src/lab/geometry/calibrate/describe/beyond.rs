@@ -2,9 +2,10 @@
 
 use nalgebra::DVector;
 
+use super::with_unit;
 use crate::lab::comparison::evidence::FIT_LEVEL;
 use crate::lab::finding::listed;
-use crate::lab::geometry::calibrate::{Calibrated, Calibration};
+use crate::lab::geometry::calibrate::{AtEdge, Calibrated, Calibration};
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::num::digits::figure;
 use crate::num::statistics::sidak_threshold;
@@ -92,6 +93,28 @@ impl Calibration {
                  stated too well, or the geometry takes up what the model lacks (a wall or surface that \
                  is not matt, other light, another order of the spots), and its errors do not hold that.",
                 listed(&far)
+            )
+        })
+    }
+
+    /// What is said of unknowns that an edge of the scene holds.
+    pub(super) fn at_edges(&self) -> Option<String> {
+        let of = |held: &AtEdge| {
+            let own = &self.found[held.index];
+            format!(
+                "{} at {} ({})",
+                own.name,
+                with_unit(own.value, 3, &own.unit),
+                held.cause
+            )
+        };
+        let held: Vec<String> = self.held.iter().map(of).collect();
+        (!held.is_empty()).then(|| {
+            format!(
+                "Beware: the photographs would go on where the scene ends, and its edge holds {}. The errors of \
+                 these do not know the edge, and the rest bends for it. Is what ends there, the wall say, as \
+                 large as the scene says and where it says?",
+                listed(&held)
             )
         })
     }
