@@ -50,12 +50,14 @@ pub struct Calibrated {
 }
 
 impl Calibrated {
-    /// Standard deviation of the estimate about 0 that what was known lets expect: it is drawn
-    /// there, √(prior² − error²). None where nothing was known.
-    pub(super) fn scatter(&self) -> Option<f64> {
-        let known = self.prior? * self.prior?;
-        let own = (known - self.by_curvature * self.by_curvature).max(LEAST * known);
-        Some((own + self.beside_noise).sqrt())
+    /// How far the estimate is from 0, over the standard deviation that what was known lets expect:
+    /// it is drawn there, √(prior² − error²). 0 where nothing was known.
+    pub(super) fn off(&self) -> f64 {
+        self.prior.map_or(0.0, |prior| {
+            let known = prior * prior;
+            let own = (known - self.by_curvature * self.by_curvature).max(LEAST * known);
+            self.value.abs() / (own + self.beside_noise).sqrt()
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod beyond;
 mod directions;
+mod named;
 mod picture;
 mod tables;
 
@@ -15,6 +16,7 @@ use crate::num::digits::{figure, perhaps};
 use crate::recovery::ErrorField;
 use crate::scene::Parameter;
 pub(super) use directions::untold;
+use named::few;
 
 /// Below this probability of so bad a fit the model lacks something.
 const SIGNIFICANCE: f64 = super::LEVEL;
@@ -22,7 +24,7 @@ const SIGNIFICANCE: f64 = super::LEVEL;
 const MORE: f64 = 1.5;
 /// What a finer rule moves is told from this part of the error on.
 const NOTABLE: f64 = 0.5;
-/// Gains that are listed one by one.
+/// Unknowns, or combinations of them, that are listed one by one.
 const LISTED: usize = 12;
 /// What is left of other light's remainder beyond the stated noise, above which nothing is
 /// estimated.
@@ -90,13 +92,12 @@ impl Calibration {
             let (value, error) = (figure(f.value, 3), with_unit(f.stderr, 2, &f.unit));
             format!("{} {value} ± {error}", f.name)
         };
-        let few: Vec<String> = self.geometry().take(LISTED).map(of).collect();
         let ended = match self.impossible() {
             _ if !self.is_settled => " The search did not end: do not use it.",
             Some(_) => " No surface can have the picture that goes with it: do not use it.",
             None => "",
         };
-        let found = format!("rom what the scene says: {}.{ended}", listed(&few));
+        let found = format!("rom what the scene says: {}.{ended}", self.first(of));
         match self.p.filter(|_| self.is_refuted()) {
             // Without a stated noise a misfit of the model is not told from it.
             None if self.field.is_some() => format!(
@@ -257,7 +258,8 @@ impl Calibration {
         let more = |f: &&Calibrated| f.by_pictures > MORE * f.by_curvature;
         let told =
             |f: &Calibrated| format!("{} by {}", f.name, with_unit(f.by_pictures, 2, &f.unit));
-        self.geometry().filter(more).map(told).collect()
+        let over = |f: &Calibrated| f.by_pictures / f.by_curvature;
+        few(self.geometry().filter(more), over, told)
     }
 
     fn notes(&self) -> Vec<String> {
@@ -291,11 +293,11 @@ impl Calibration {
                 listed(&by_pictures)
             ));
         }
-        let by_rule = self.geometry().filter_map(|f| {
-            let moved = f.by_rule.filter(|moved| *moved > NOTABLE * f.stderr)?;
-            Some(format!("{} by {}", f.name, with_unit(moved, 2, &f.unit)))
+        let moved = |f: &Calibrated| f.by_rule.unwrap_or(0.0) / f.stderr;
+        let by_rule = few(self.geometry().filter(|f| moved(f) > NOTABLE), moved, |f| {
+            let moved = f.by_rule.unwrap_or(0.0);
+            format!("{} by {}", f.name, with_unit(moved, 2, &f.unit))
         });
-        let by_rule: Vec<String> = by_rule.collect();
         if !by_rule.is_empty() {
             let then = if self.is_integrated {
                 "that is counted in its error"
@@ -307,13 +309,7 @@ impl Calibration {
                 listed(&by_rule)
             ));
         }
-        for direction in &self.untold {
-            let name = |k: usize| self.found.get(k).map(|f| f.name.clone());
-            notes.push(format!(
-                "The photographs do not tell {}: what was known beforehand holds it.",
-                direction.names(name)
-            ));
-        }
+        notes.extend(self.held_by_what_was_known());
         notes
     }
 }

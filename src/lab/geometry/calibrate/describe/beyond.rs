@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::named::few;
 use super::with_unit;
 use crate::lab::comparison::evidence::FIT_LEVEL;
 use crate::lab::finding::listed;
@@ -63,21 +64,17 @@ impl Calibration {
         self.beforehand.is_some_and(|of| of.p < FIT_LEVEL)
     }
 
-    /// The parameters that are, each over the scatter that is expected.
-    fn far(&self) -> impl Iterator<Item = (&Calibrated, f64)> {
-        let off = |f: &Calibrated| Some(f.value.abs() / f.scatter()?);
+    /// The parameters that are.
+    fn far(&self) -> impl Iterator<Item = &Calibrated> {
         let known = self.geometry().filter(|f| f.prior.is_some()).count();
         let most = sidak_threshold(FAR, known.max(1) as u64);
-        let each = self.geometry().filter_map(move |f| Some((f, off(f)?)));
-        each.filter(move |(_, off)| *off > most)
+        self.geometry().filter(move |f| f.off() > most)
     }
 
     /// What is said of them.
     pub(super) fn beyond(&self) -> Option<String> {
-        let mut far: Vec<String> = self
-            .far()
-            .map(|(f, off)| format!("{} ({} σ)", f.name, figure(off, 2)))
-            .collect();
+        let said = |f: &Calibrated| format!("{} ({} σ)", f.name, figure(f.off(), 2));
+        let mut far = few(self.far(), Calibrated::off, said);
         far.extend(self.beforehand.filter(|_| self.is_beyond_together()).map(|of| {
             format!(
                 "all together (χ² {} of {} directions that the photographs tell, at most {} σ; P {})",

@@ -2,7 +2,7 @@
 
 use super::LISTED;
 use crate::lab::finding::listed;
-use crate::lab::geometry::calibrate::Direction;
+use crate::lab::geometry::calibrate::{Calibration, Direction};
 use crate::scene::Parameter;
 
 /// Why some combinations of unknowns cannot be estimated.
@@ -25,6 +25,24 @@ pub(in crate::lab::geometry::calibrate) fn untold(
         "at their noise the photographs do not tell {}; what moves with such a combination changes nothing that the picture or the rest could not. Leave one of each out, or say how well it is known (--free NAME=SIGMA, or [uncertainty] in the scene){gains}",
         listed(&all)
     )
+}
+
+impl Calibration {
+    /// What is said of combinations that the photographs do not tell.
+    pub(super) fn held_by_what_was_known(&self) -> Option<String> {
+        let name = |k: usize| self.found.get(k).map(|f| f.name.clone());
+        let all = self.untold.iter().take(LISTED);
+        let mut few: Vec<String> = all.map(|direction| direction.names(name)).collect();
+        if self.untold.len() > LISTED {
+            few.push(format!("{} more", self.untold.len() - LISTED));
+        }
+        (!few.is_empty()).then(|| {
+            format!(
+                "The photographs do not tell {}: what was known beforehand holds that.",
+                listed(&few)
+            )
+        })
+    }
 }
 
 impl Direction {

@@ -7,7 +7,7 @@ use crate::lab::geometry::calibrate::{Calibrated, Calibration};
 
 impl Calibration {
     pub(super) fn table(&self) -> Table {
-        let rows = self.geometry().chain(self.gains());
+        let rows = self.in_order().into_iter().chain(self.gains());
         Table {
             caption: "From what the scene says, and its errors".to_owned(),
             file: Some("calibration.csv".to_owned()),
@@ -68,7 +68,7 @@ impl Calibration {
             ),
             file: Some("identifiability.csv".to_owned()),
             ..Table::of(
-                self.geometry(),
+                self.in_order(),
                 [
                     (Column::text("unknown", "unknown"), |f: &&Calibrated| {
                         Cell::name(&f.name)
