@@ -1,9 +1,8 @@
 //! Tables, figures and pictures of a calibration.
 
-use crate::lab::finding::{
-    Axis, Cell, Column, Curve, Figure, Gallery, Mark, Picture, Plot, Shades, Table,
-};
+use crate::lab::finding::{Axis, Cell, Column, Curve, Figure, Gallery, Mark, Picture, Plot, Table};
 use crate::lab::geometry::calibrate::{Calibrated, Calibration};
+use crate::lab::geometry::located::Grid;
 
 impl Calibration {
     pub(super) fn table(&self) -> Table {
@@ -124,15 +123,24 @@ impl Calibration {
         )]
     }
 
+    /// The picture and its errors; of a free scale, of which only ratios are told, over its brightest
+    /// element.
     pub(super) fn gallery(&self) -> Gallery {
+        let all = self.grids.iter().flat_map(|g| &g.values);
+        let brightest = all.fold(0.0, |most: f64, x| most.max(*x));
+        let (unit, over) = if self.scale != 1.0 && brightest > 0.0 {
+            (brightest, " over its brightest element")
+        } else {
+            (1.0, "")
+        };
         let of = |title: String, count: [usize; 2], values: &[f64]| Picture {
             title,
             size: count,
-            values: values.to_vec(),
+            values: values.iter().map(|x| x / unit).collect(),
             axes: ["u", "v"].map(str::to_owned),
             width: 2.0,
         };
-        let both = |grid: &crate::lab::geometry::located::Grid| {
+        let both = |grid: &Grid| {
             [
                 of(grid.surface.clone(), grid.count, &grid.values),
                 of(
@@ -142,11 +150,11 @@ impl Calibration {
                 ),
             ]
         };
-        Gallery {
-            title: "The picture with the calibrated geometry, and its errors with those of the geometry".to_owned(),
-            shades: Shades::Reflectance,
-            unit: String::new(),
-            pictures: self.grids.iter().flat_map(both).collect(),
-        }
+        Gallery::reflectances(
+            format!(
+                "The picture with the calibrated geometry{over}, and its errors with those of the geometry"
+            ),
+            self.grids.iter().flat_map(both).collect(),
+        )
     }
 }
