@@ -109,6 +109,14 @@ impl Patterns {
         }
     }
 
+    /// What is said where neighbours may be alike, if that holds: of levels that are exact, unless
+    /// the picture goes by it. None where it is not known, or they are not.
+    pub fn told_if_alike(&self) -> Option<&Self> {
+        let exact = self.exact.is_none_or(|p| p >= Self::UNLIKELY);
+        let alike = self.if_alike.as_deref();
+        alike.filter(|_| self.settled_if_alike || exact)
+    }
+
     /// What the evidence takes for granted: that neighbours may be alike, where what that says is
     /// known. None where it is not and the sum is not to be believed.
     pub fn believed(&self) -> Option<&Self> {

@@ -61,7 +61,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         unfinished(found, judged),
         drifting(found).filter(|_| !is_at_fault(judged)),
         without_bands(found),
-        unsampled(found),
+        unsampled(found, judged),
         spread(found),
         one_of_many(found, judged),
     ];
@@ -180,8 +180,9 @@ fn without_bands(found: &Recovered) -> Option<String> {
 }
 
 /// Probabilities of patterns that the sampling did not settle.
-fn unsampled(found: &Recovered) -> Option<String> {
+fn unsampled(found: &Recovered, judged: &Judged) -> Option<String> {
     let of = found.patterns.as_ref()?;
+    let explains = judged.fit.as_ref().is_none_or(|fit| fit.fits);
     let Sum::Sampled { disagreement, .. } = of.assumed().sum else {
         return None;
     };
@@ -190,14 +191,14 @@ fn unsampled(found: &Recovered) -> Option<String> {
             "the probabilities of its patterns are NOT to be believed: that of an element may be off by \
              {}. Use fewer --elements, give the --levels, or believe joint-gp{}",
             significant(disagreement, 2),
-            or_alike(of)
+            if explains { or_alike(of) } else { "" }
         )
     })
 }
 
 /// What else may be believed, where it is known.
 fn or_alike(of: &Patterns) -> &'static str {
-    match of.if_alike {
+    match of.told_if_alike() {
         Some(_) if !of.settled_if_alike => {
             "; or, if neighbours may be alike, as of a board or a letter, the mean where they are"
         }
@@ -235,11 +236,10 @@ fn spread(found: &Recovered) -> Option<String> {
     }
     Some(format!(
         "if {}, exactly two reflectances have probability {}: elements that differ from theirs by about {} \
-         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp{}",
+         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp",
         beforehand(of),
         figure(exact, 2),
-        assumed.spread?,
-        or_alike(of)
+        assumed.spread?
     ))
 }
 

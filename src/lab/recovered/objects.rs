@@ -290,8 +290,8 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
                 .as_ref()
                 .map(|p| p.assumed().light.as_slice()[range.clone()].to_vec()),
             alike: found.patterns.as_ref().and_then(|p| {
-                let alike = p.if_alike.as_ref();
-                let alike = alike.filter(|_| !found.rests_on_wrong_gains())?;
+                let holds = explains && !found.rests_on_wrong_gains();
+                let alike = p.told_if_alike().filter(|_| holds)?;
                 let own = |v: &DVector<f64>| v.as_slice()[range.clone()].to_vec();
                 Some([own(&alike.mean), own(&alike.deviation)])
             }),

@@ -83,7 +83,7 @@ pub(in crate::lab) fn beforehand(of: &Patterns) -> &'static str {
 
 /// What the picture does not go by, where it is known.
 fn otherwise(of: &Patterns) -> String {
-    match &of.if_alike {
+    match of.told_if_alike() {
         Some(_) if of.settled_if_alike => {
             let said = if of.sum.converged() {
                 format!("probability {:.3} and {}", of.pattern, undecided(of))

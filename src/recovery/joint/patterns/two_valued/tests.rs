@@ -426,3 +426,50 @@ fn a_larger_error_of_the_scale_loses_no_pattern() {
         }
     }
 }
+
+/// Of a picture of three levels, which elements that differ from theirs explain, no pattern is kept
+/// that fits worse than that of the probabilities: with the levels a, b of least squares, which lie
+/// inside, ‖d‖² less the square of its part in the plane of both columns.
+#[test]
+fn no_pattern_is_kept_that_fits_worse_than_the_probabilities() {
+    let (nu, nv) = (6, 5);
+    let kernel = |k: usize, j: usize| {
+        let at = [(k % 13) as f64 / 12.0 * 6.0, (k / 13) as f64 / 12.0 * 5.0];
+        let [x, y] = [(j % nu) as f64 + 0.5, (j / nu) as f64 + 0.5];
+        3.2 / ((x - at[0]).powi(2) + (y - at[1]).powi(2) + 4.0).powi(2)
+    };
+    let c = DMatrix::from_fn(169, nu * nv, kernel);
+    let d = DMatrix::from_element(nu * nv, 1, 1.0);
+    let truth = DVector::from_fn(nu * nv, |j, _| match (j % nu, j / nu) {
+        (1..=2, 1..=3) | (1..=4, 1) => 0.9,
+        (1..=4, 3) => 0.6,
+        _ => 0.0,
+    });
+    let exact = &c * &truth;
+    let sigma = 2e-3 * exact.max();
+    for seed in 1..5 {
+        let mut normal = normal_stream(seed);
+        let phi = exact.map(|x| x + sigma * normal());
+        let phi = DMatrix::from_column_slice(169, 1, phi.as_slice());
+        let stderr = DMatrix::from_element(169, 1, sigma);
+        let grids = [[nu, nv]];
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        let problem = problem.with_grids(&grids).unwrap();
+        let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+        let light = &found.patterns.as_ref().unwrap().light;
+        let set = |lit: bool| light.map(|p| f64::from(u8::from((p > 0.5) == lit)));
+        let (u, w) = (&c * set(false), &c * set(true));
+        let [uu, uw, ww] = [u.dot(&u), u.dot(&w), w.dot(&w)];
+        let [du, dw] = [u.dot(&phi.column(0)), w.dot(&phi.column(0))];
+        let whole = uu * ww - uw * uw;
+        let [a, b] = [(ww * du - uw * dw) / whole, (uu * dw - uw * du) / whole];
+        let clamp = |x: f64| x.clamp(0.0, 1.0);
+        let left = phi.column(0) - u * clamp(a) - w * clamp(b);
+        let of_probabilities = 0.5 * left.norm_squared() / (sigma * sigma);
+        let own = found.solver.unwrap().objective;
+        assert!(
+            own <= of_probabilities * (1.0 + 1e-9),
+            "{seed}: {own} {of_probabilities}"
+        );
+    }
+}
