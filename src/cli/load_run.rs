@@ -107,7 +107,7 @@ fn folder_meant(given: &Path) -> String {
                 given.join("phi.npy").display()
             )
         }
-        _ => "give a folder that `phicam run` or `phicam render` has written".to_owned(),
+        _ => "give a folder that `phicam run`, `phicam render` or, from a camera's files, `phicam import` has written".to_owned(),
     }
 }
 

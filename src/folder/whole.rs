@@ -147,7 +147,7 @@ pub fn read_run(folder: &Path, also: &[PathBuf]) -> Result<Run, FolderError> {
         );
         FolderError::new(
             cause,
-            "give a folder that `phicam run`, `phicam render` or `Phi.save` has written",
+            "give a folder that `phicam run`, `phicam render`, `phicam import` or `Phi.save` has written",
         )
     })?;
     record.check_lengths(folder, COPIES)?;

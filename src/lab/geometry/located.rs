@@ -234,7 +234,7 @@ impl LocatedPlan {
             is_noise_known: photographs.stderr.is_some(),
             fit,
             light_left_out,
-            shared: photographs.certainty.errors.shared(),
+            shared: photographs.certainty.shared(),
         })
     }
 

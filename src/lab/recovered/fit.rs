@@ -177,9 +177,9 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Which entries share their errors, in words.
-    pub(super) fn shared(&self) -> Option<&'static str> {
-        self.certainty.and_then(|known| known.errors.shared())
+    /// Which entries share their errors, and what gives each its own, in words.
+    pub(super) fn shared(&self) -> Option<[&'static str; 2]> {
+        self.certainty.and_then(Certainty::shared)
     }
 
     /// What holds for every method: the best of all that was `found` and can be found, and what the

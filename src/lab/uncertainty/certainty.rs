@@ -61,13 +61,17 @@ impl Errors {
 
 /// That errors of which entries share `which` do not average out, in what is found of `what`, and
 /// the cure.
-pub(in crate::lab) fn hang_together(which: &str, what: &str, cure: &str) -> String {
+pub(in crate::lab) fn hang_together([which, cure]: [&str; 2], what: &str) -> String {
     format!(
         "The errors of these photographs HANG TOGETHER: {which}, and they do not average out. Those of \
-         {what} take each entry's for its own, and may be several times too small. Render by --estimator \
-         independent; of dark frames that all spots share {cure}."
+         {what} take each entry's for its own, and may be several times too small. {cure}."
     )
 }
+
+/// What gives each entry errors of its own: of a render, and of photographs.
+const RENDERED: &str = "Render by --estimator independent";
+const PHOTOGRAPHED: &str =
+    "Take more of the dark frames that all spots share, or estimate their part (--background)";
 
 /// What errors were pooled from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,6 +152,14 @@ impl Certainty {
             replicates: replicates.or(self.replicates),
             ..self
         }
+    }
+
+    /// Which entries share their errors, and what gives each its own, in words; none where none do.
+    /// No photographs share theirs among all entries.
+    pub(in crate::lab) fn shared(self) -> Option<[&'static str; 2]> {
+        let which = self.errors.shared()?;
+        let is_render = self.paths.is_some() || self.errors == Errors::Everywhere;
+        Some([which, if is_render { RENDERED } else { PHOTOGRAPHED }])
     }
 
     /// As from how many replicates errors are known where they were pooled.

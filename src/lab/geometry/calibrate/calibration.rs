@@ -103,8 +103,8 @@ pub struct Calibration {
     pub replicates: Option<u32>,
     /// How many times too small the errors are for that, where it is much.
     pub too_small: Option<f64>,
-    /// Which entries share their errors, where they do.
-    pub shared: Option<&'static str>,
+    /// Which entries share their errors, where they do, and what gives each its own.
+    pub shared: Option<[&'static str; 2]>,
     /// Whether the stated noise follows from the noisy entries, and what light to expect in these
     /// is not known.
     pub follows_entries: bool,

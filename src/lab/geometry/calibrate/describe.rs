@@ -231,8 +231,7 @@ impl Calibration {
 
     /// That errors which hang together do not average out.
     fn hang_together(&self) -> Option<String> {
-        let cure = "take more, or estimate their part (--background)";
-        Some(hang_together(self.shared?, "the geometry", cure))
+        Some(hang_together(self.shared?, "the geometry"))
     }
 
     fn searched(&self) -> String {

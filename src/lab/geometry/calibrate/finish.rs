@@ -171,7 +171,7 @@ impl CalibrationPlan {
             brightest,
             replicates: known.replicates.filter(|_| is_noise_known),
             too_small: known.too_small().filter(|_| is_noise_known),
-            shared: known.errors.shared().filter(|_| is_noise_known),
+            shared: known.shared().filter(|_| is_noise_known),
             follows_entries: known.follows_entries,
             neighbours,
             noise: ends[0].noise(),

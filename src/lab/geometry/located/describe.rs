@@ -226,7 +226,7 @@ impl Describe for Located {
         let title = format!("Where it is: {}, {}", self.what, self.scene);
         let mut notes = vec![self.errors(), self.explained()];
         let which = self.shared.filter(|_| self.is_noise_known);
-        notes.extend(which.map(|which| hang_together(which, "the place", "take more")));
+        notes.extend(which.map(|which| hang_together(which, "the place")));
         notes.extend(self.left_out_light().map(|light| light.beware("place")));
         notes.extend(self.brightest());
         notes.push(self.ordered());

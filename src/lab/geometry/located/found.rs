@@ -110,8 +110,9 @@ pub struct Located {
     pub light_left_out: Vec<LightLeftOut>,
     /// Whether standard errors are stated.
     pub is_noise_known: bool,
-    /// Which entries share their errors, where they do: no frame left out shows that.
-    pub shared: Option<&'static str>,
+    /// Which entries share their errors, where they do (no frame left out shows that), and what
+    /// gives each its own.
+    pub shared: Option<[&'static str; 2]>,
 }
 
 impl Located {

@@ -23,12 +23,10 @@ const MUCH_LARGER: f64 = 3.0;
 
 /// Errors that do not average out over the entries, as a recovery supposes.
 pub(super) fn shared(judged: &Judged) -> Option<String> {
-    let which = judged.shared()?;
+    let [which, cure] = judged.shared()?;
     Some(format!(
         "the errors of these photographs hang together: {which}, and they do not average out. So there \
-         are no standard errors, bands and probabilities, and less is determined than is said. Render \
-         by --estimator independent for them; of dark frames that all spots share take more, or \
-         estimate their part (--background)"
+         are no standard errors, bands and probabilities, and less is determined than is said. {cure}"
     ))
 }
 
