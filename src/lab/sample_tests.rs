@@ -121,6 +121,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
             z: 4.1,
         }],
         unmodelled: Vec::new(),
+        sent_on: None,
     });
     let hidden: Vec<(String, [usize; 2])> = run
         .scene

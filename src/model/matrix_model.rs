@@ -41,6 +41,9 @@ pub struct MatrixModel {
     /// The terms of each element, where something stands in the way: C and D then hold the visible
     /// share of each entry, and their product is an approximation ([`MatrixModel::product_error`]).
     pub factors: Option<Factors>,
+    /// Occluders that send on light which the model does not have
+    /// ([`Scene::sent_on`]).
+    pub sent_on: Option<String>,
 }
 
 /// Entries that all matrices of a model together may have: 8 GB.
@@ -139,6 +142,7 @@ impl MatrixModel {
             camera_side,
             laser_side,
             factors: None,
+            sent_on: None,
         })
     }
 
@@ -255,6 +259,7 @@ impl MatrixModel {
             camera_side,
             laser_side,
             factors: None,
+            sent_on: scene.sent_on(),
         })
     }
 

@@ -283,6 +283,17 @@ impl Scene {
         surface::of_role(Role::Hidden, &self.surfaces)
     }
 
+    /// Occluders that reflect and that light may meet on its way, by name, in quotes and separated
+    /// by commas; none where there are none, and where the hidden surface shines, of whose picture
+    /// they are no term.
+    pub fn sent_on(&self) -> Option<String> {
+        let occluders = surface::of_role(Role::Occluder, &self.surfaces);
+        let names = occluders.filter(|(_, s)| !s.is_black());
+        let names: Vec<String> = names.map(|(_, s)| format!("`{}`", s.name)).collect();
+        let can = self.max_bounces > 1 && self.shining().is_none();
+        (can && !names.is_empty()).then(|| names.join(", "))
+    }
+
     /// The hidden surfaces of unknown albedo, by name, in quotes and separated by commas; none
     /// where every albedo is known.
     pub fn unknown(&self) -> Option<String> {

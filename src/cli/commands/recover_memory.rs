@@ -221,6 +221,7 @@ impl Strips<'_> {
             certainty: Some(self.certainty),
             moved: None,
             against: None,
+            sent_on: self.model.sent_on.clone(),
         })
     }
 

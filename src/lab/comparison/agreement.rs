@@ -124,6 +124,9 @@ pub struct Agreement {
     /// Light that the frames may hold and the model does not, in words.
     #[serde(default)]
     pub unmodelled: Vec<String>,
+    /// Occluders that send on light which the model does not have, by name.
+    #[serde(default)]
+    pub sent_on: Option<String>,
 }
 
 /// Entries listed by name.
@@ -263,6 +266,7 @@ pub fn agree(
         score,
         worst: worst(&z, &evidence),
         unmodelled: Vec::new(),
+        sent_on: None,
     };
     (agreement, z)
 }

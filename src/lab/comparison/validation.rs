@@ -138,6 +138,7 @@ pub fn validate(
     integration.name().clone_into(&mut agreement.integration);
     agreement.occlusion = visible.as_ref().map(|v| v.points);
     agreement.unmodelled.splice(0..0, unmodelled(scene));
+    agreement.sent_on = scene.sent_on();
     if let Some(score) = &mut agreement.score {
         score.shadows_stay = off.are_shadows_still();
         let mut hidden = scene.hidden();

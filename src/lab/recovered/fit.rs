@@ -174,6 +174,8 @@ pub struct Judged {
     pub moved: Option<DVector<f64>>,
     /// Another method that fits as well and says something else.
     pub against: Option<Rival>,
+    /// Occluders that send on light which the model does not have, by name.
+    pub sent_on: Option<String>,
 }
 
 impl Judged {
@@ -215,6 +217,7 @@ impl Judged {
             certainty: noise.map(|known| known.certainty),
             moved: None,
             against: None,
+            sent_on: None,
         }
     }
 

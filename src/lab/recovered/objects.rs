@@ -194,7 +194,10 @@ fn attempts(
         .collect();
     let known = noise.known(model);
     let all: Vec<&Recovered> = found.iter().flatten().collect();
-    let any = Judged::any(problem, known, &all, options);
+    let any = Judged {
+        sent_on: model.sent_on.clone(),
+        ..Judged::any(problem, known, &all, options)
+    };
     // Photographs that nothing explains are likeliest by no assumption.
     let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
     let first = likelier(&all).filter(|_| explained && any.shared().is_none());

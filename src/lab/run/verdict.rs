@@ -190,6 +190,13 @@ impl Agreement {
     pub(super) fn cause(&self, score: &Score) -> String {
         let level = share(self.significance, true);
         let cause = score.cause(self.chi2_per_dof, self.dof, level);
+        let beside = self.sent_on.as_ref().map_or(String::new(), |names| {
+            format!(
+                "light that {names} send on, which the model does not have (`phicam recover --occluder-light` estimates \
+                 it beside the picture); if it is not that: "
+            )
+        });
+        let cause = beside + &cause;
         if score.untested.iter().all(|name| name != SINGLE_ELEMENTS) {
             return cause;
         }

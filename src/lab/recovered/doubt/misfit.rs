@@ -33,7 +33,7 @@ pub(super) fn outlier(judged: &Judged) -> Option<String> {
 /// another does.
 pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
     if let Some(best) = judged.best.as_ref().filter(|best| !best.possible.fits) {
-        return Some(contradiction(best));
+        return Some(contradiction(best, judged.sent_on.as_deref()));
     }
     let fit = judged.fit.as_ref()?;
     if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
@@ -114,13 +114,20 @@ fn cure(method: Method) -> &'static str {
     }
 }
 
-/// No reflectances between 0 and 1 explain the photographs.
-fn contradiction(best: &Attainable) -> String {
+/// No reflectances between 0 and 1 explain the photographs; `sent_on` names occluders whose light
+/// is none of the model's.
+fn contradiction(best: &Attainable, sent_on: Option<&str>) -> String {
     let told = told(&best.possible);
+    let beside = sent_on.map_or(String::new(), |names| {
+        format!(
+            " Most likely light that {names} send on, which the model does not have: estimate it beside the \
+             picture (--occluder-light). If that does not help:"
+        )
+    });
     if best.brightness > 1.0 && best.any.as_ref().is_none_or(|any| any.fits) {
         return format!(
             "DOES NOT FIT, by any method: the photographs are {} times as bright as a surface of \
-             reflectance 1 would make them ({told}). Is Φcam in W, and are power, aperture and \
+             reflectance 1 would make them ({told}).{beside} Is Φcam in W, and are power, aperture and \
              albedos of the scene right? Give it in W, or estimate one factor (--free-scale)",
             significant(best.brightness, 3)
         );
@@ -146,7 +153,7 @@ fn contradiction(best: &Attainable) -> String {
     };
     format!(
         "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
-         ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
+         ({told}); {any}.{beside} The scene is not what was photographed, or the standard errors are too \
          small. Check{exact} geometry, order and orientation of the frames, unit and --stderr; more \
          --elements where they are coarse; what stands in the way, in the scene; \
          --frame-constant, --background or --occluder-light for other light; --integration centres \
@@ -205,6 +212,37 @@ mod tests {
                     usize::from(was_given),
                     "{told}"
                 );
+            }
+        }
+    }
+
+    /// Light of occluders that the model does not have comes before units and errors; of a scene
+    /// whose occluders are black, or none, it is not named.
+    #[test]
+    fn light_of_occluders_is_the_first_cause() {
+        let bright = Attainable {
+            possible: Fit {
+                p: 0.0,
+                fits: false,
+                ..fit(9.0)
+            },
+            any: None,
+            brightness: 1.4,
+        };
+        for best in [
+            bright.clone(),
+            Attainable {
+                brightness: 1.0,
+                ..bright
+            },
+        ] {
+            for scene in ["corner", "bench"] {
+                let scene = crate::scene::Scene::load(scene).unwrap();
+                let told = contradiction(&best, scene.sent_on().as_deref());
+                let [own, general] = [told.find("--occluder-light)."), told.find("Is Φcam in W")];
+                let general = general.or_else(|| told.find("The scene is not"));
+                assert_eq!(own.is_some(), scene.name == "corner", "{told}");
+                assert!(own < general, "{told}");
             }
         }
     }
