@@ -57,12 +57,25 @@ fn aimed(args: &PathArgs, scene: &Scene, console: Console) -> Result<Plan, Failu
             estimator, budget, ..
         } = plan;
         console.say(format!(
-            "a pilot chose --estimator {estimator} --samples {}: it foretells an overall standard error of {:.2} %",
+            "a pilot chose --estimator {estimator} --samples {}: it foretells an overall standard error of {:.2} %{}",
             budget.samples(),
-            100.0 * error
+            100.0 * error,
+            without_errors(scene, &plan)
         ));
     }
     Ok(plan)
+}
+
+/// That a recovery from this render has no standard errors, and what gives them, where it is so.
+fn without_errors(scene: &Scene, plan: &Plan) -> String {
+    let which = Errors::of(plan.estimator).shared();
+    let which = which.filter(|_| scene.hidden().next().is_some());
+    which.map_or(String::new(), |which| {
+        format!(
+            ", but {which}, so that what is recovered from it has no standard errors: --estimator independent gives \
+             them, at more time for the same noise"
+        )
+    })
 }
 
 /// Says so where `plan` has more samples than were asked for.

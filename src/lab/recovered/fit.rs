@@ -35,6 +35,7 @@ use nalgebra::DVector;
 use crate::lab::uncertainty::certainty::Certainty;
 use crate::matrix::Matrix;
 use crate::model::Factors;
+use crate::num::statistics::chi_square_quantile;
 use crate::recovery::{
     Determined, Method, Options, Problem, Recovered, RecoveryError, determined, unseen,
 };
@@ -85,7 +86,26 @@ pub struct Fit {
     pub with_light: Option<f64>,
 }
 
+/// Parts of the noise, beside it in every entry, that a test must find to judge a picture by.
+const BLIND: f64 = 2.0;
+
 impl Fit {
+    /// The misfit in every entry, in standard errors, that makes χ²/dof on average what refutes a
+    /// picture:
+    ///
+    /// > E χ²/dof = 1 + m²,   m = √(χ²_ν(1 − level)/ν − 1)
+    ///
+    /// with ν degrees of freedom: 3.1 of one, 1.4 of ten, 0.4 of a thousand.
+    pub fn passes(&self) -> f64 {
+        let most = chi_square_quantile(1.0 - self.level, self.dof) / self.dof;
+        (most - 1.0).max(0.0).sqrt()
+    }
+
+    /// Whether it is not refuted, by a test that passes over misfits of twice the noise.
+    pub fn is_blind(&self) -> bool {
+        self.fits && self.passes() > BLIND
+    }
+
     /// Whether it is neither refuted nor told: more than noise differs, but no more than the
     /// integrals of the model may be off.
     pub fn is_open(&self) -> bool {

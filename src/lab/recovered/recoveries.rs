@@ -105,7 +105,7 @@ pub fn recovery(group: &[&RecoveredObject]) -> Table {
 /// Whether each method's picture explains the photographs.
 pub fn fits(group: &[&RecoveredObject]) -> Table {
     let fits = |r: &RecoveredObject| match &r.fit {
-        Some(fit) if fit.is_open() => "open",
+        Some(fit) if fit.is_open() || fit.is_blind() => "open",
         Some(fit) if fit.fits => "yes",
         Some(_) => "NO",
         None => "not known",

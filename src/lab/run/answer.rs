@@ -7,6 +7,7 @@ use crate::lab::finding::{Describe, Finding, Tone};
 use crate::lab::recovered::chosen::beforehand;
 use crate::lab::recovered::objects::RecoveredObject;
 use crate::lab::recovered::recoveries::{by_surface, determined};
+use crate::lab::uncertainty::certainty::Certainty;
 use crate::num::digits::{figure, freedom, significant};
 use crate::num::summation::root_mean_square;
 
@@ -58,7 +59,7 @@ impl RunResults {
             claims.push(recovered(self, &pictures));
         }
         if !pictures.is_empty() {
-            claims.push(certainty(&pictures));
+            claims.push(certainty(&pictures, Certainty::of(&self.plan)));
         }
         Answer {
             agreement: self.agrees(),
@@ -162,7 +163,7 @@ fn distance(r: &RecoveredObject) -> String {
 
 /// Whether the picture explains the photographs, its error by element, and how much of it the
 /// photographs determine.
-fn certainty(pictures: &[&RecoveredObject]) -> Claim {
+fn certainty(pictures: &[&RecoveredObject], known: Certainty) -> Claim {
     let first = pictures[0];
     let (tone, fit) = match &first.fit {
         None => (
@@ -177,6 +178,10 @@ fn certainty(pictures: &[&RecoveredObject]) -> Claim {
                 figure(fit.p, 2)
             );
             let (tone, words) = match (fit.fits, first.contradicted()) {
+                (true, _) if fit.is_blind() => (
+                    Tone::Plain,
+                    "whether it fits the photographs CANNOT BE JUDGED",
+                ),
                 (true, false) if fit.is_open() => (
                     Tone::Plain,
                     "whether it fits the photographs CANNOT BE TOLD",
@@ -191,7 +196,7 @@ fn certainty(pictures: &[&RecoveredObject]) -> Claim {
             (tone, format!("{words}: {numbers}"))
         }
     };
-    let mut sentence = format!("{fit}. {}", error(pictures));
+    let mut sentence = format!("{fit}. {}", error(pictures, known));
     sentence += determined(pictures).trim_end_matches('.');
     let warnings: usize = first.warnings.len();
     if warnings > 0 {
@@ -210,7 +215,7 @@ fn certainty(pictures: &[&RecoveredObject]) -> Claim {
 }
 
 /// The standard errors of all elements; of pictures of two values how many elements are decided.
-fn error(pictures: &[&RecoveredObject]) -> String {
+fn error(pictures: &[&RecoveredObject], known: Certainty) -> String {
     let errors = pictures.iter().filter_map(|r| r.standard_error.as_ref());
     let (errors, unbounded): (Vec<f64>, Vec<f64>) =
         errors.flatten().copied().partition(|s| s.is_finite());
@@ -246,7 +251,10 @@ fn error(pictures: &[&RecoveredObject]) -> String {
         ));
     }
     if told.is_empty() {
-        return "It states no error for an element. ".to_owned();
+        let why = known.shared().map_or(String::new(), |[which, cure]| {
+            format!(", for the errors of this render hang together: {which}. {cure} for them")
+        });
+        return format!("It states no error for an element{why}. ");
     }
     let told = told.join("; ");
     let mut letters = told.chars();

@@ -60,12 +60,12 @@ fn bad_news_are_as_loud_as_good_ones() {
     for r in &mut results.recovered {
         r.best_fit.as_mut().unwrap().fits = false;
     }
-    let sure = certainty(&results.answer().pictures);
+    let sure = certainty(&results.answer().pictures, Certainty::STATED);
     assert!(sure.sentence.contains("nor does any other"));
     for r in &mut results.recovered {
         r.fit = None;
     }
-    let sure = certainty(&results.answer().pictures);
+    let sure = certainty(&results.answer().pictures, Certainty::STATED);
     assert_eq!(sure.tone, Tone::Plain);
     assert!(sure.sentence.contains("CANNOT BE JUDGED"));
 }
@@ -75,11 +75,11 @@ fn bad_news_are_as_loud_as_good_ones() {
 fn errors_of_elements_are_told_with_their_largest() {
     let results = run("bench");
     let mut object = results.recovered[0].clone();
-    assert!(error(&[&object]).contains("no error for an element"));
+    assert!(error(&[&object], Certainty::STATED).contains("no error for an element"));
     object.standard_error = Some(vec![0.3, 0.4]);
     object.light = Some(vec![0.001, 0.94]);
     assert_eq!(
-        error(&[&object]),
+        error(&[&object], Certainty::STATED),
         "Standard error 0.35 an element (root mean square), 0.40 at most; 1 of 2 elements light or \
          dark with more than 95\u{a0}% probability. "
     );
@@ -124,4 +124,21 @@ fn a_scene_that_hides_nothing_says_so() {
     results.phi.fill(0.0);
     let nothing = &results.answer().claims[1].sentence;
     assert_eq!(nothing, "nothing: no light reached the camera");
+}
+
+/// Of one degree of freedom a fit is no good news; and why there are no errors is said, with what
+/// gives them.
+#[test]
+fn what_cannot_be_judged_is_no_good_news() {
+    let mut results = run("bench");
+    for r in &mut results.recovered {
+        r.fit.as_mut().unwrap().dof = 1.0;
+    }
+    results.plan.estimator = crate::transport::Estimator::Factored;
+    let answer = results.answer();
+    let sure = about(&answer, "how sure");
+    assert_eq!(sure.tone, Tone::Plain);
+    let words = &sure.sentence;
+    assert!(words.contains("CANNOT BE JUDGED"), "{words}");
+    assert!(words.contains("--estimator independent"), "{words}");
 }

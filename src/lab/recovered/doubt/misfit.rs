@@ -1,7 +1,7 @@
 //! Photographs that a picture, or any picture, does not explain.
 
 use crate::lab::recovered::fit::{Attainable, Fit, Judged};
-use crate::num::digits::{figure, significant};
+use crate::num::digits::{figure, freedom, significant};
 use crate::recovery::{Method, Recovered, Weighting};
 
 fn told(fit: &Fit) -> String {
@@ -36,6 +36,14 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
         return Some(contradiction(best, judged.sent_on.as_deref()));
     }
     let fit = judged.fit.as_ref()?;
+    if fit.is_blind() {
+        return Some(format!(
+            "whether it fits CANNOT BE JUDGED: with so few degrees of freedom ({}) light that is off by {} times \
+             the noise in every entry would pass, and no picture is told from another by that",
+            freedom(fit.dof),
+            significant(fit.passes(), 2)
+        ));
+    }
     if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
         let counted = match &judged.moved {
             Some(_) => "count both",

@@ -50,6 +50,28 @@ fn a_fit_by_hand() {
     assert!((problem.brightness() - 2.0).abs() < 1e-12);
 }
 
+/// P(χ²₂ > x) = e^(−x/2), so that of two degrees of freedom a level α lets m = √(−ln α − 1) pass:
+/// more than twice the noise at 0.001, less at 0.05, and of a thousand little at either.
+#[test]
+fn few_degrees_of_freedom_refute_little() {
+    for (level, blind) in [(1e-3, true), (0.05, false)] {
+        let of = |dof| Fit {
+            dof,
+            level,
+            ..crate::lab::sample::fit(1.0)
+        };
+        let due = (-f64::ln(level) - 1.0).sqrt();
+        assert!((of(2.0).passes() - due).abs() < 1e-9);
+        assert_eq!(of(2.0).is_blind(), blind);
+        assert!(of(1e3).passes() < 0.5 && !of(1e3).is_blind());
+        let refuted = Fit {
+            fits: false,
+            ..of(2.0)
+        };
+        assert!(!refuted.is_blind());
+    }
+}
+
 /// A right model is called refuted at the rate of the level: 400 seeds at 10 %, within the
 /// binomial 99.9 %. Photographs by the model on its own elements, levels away from the bounds
 /// and at them; where they are at them `joint` keeps to the right side.
