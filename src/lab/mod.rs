@@ -196,7 +196,7 @@ pub use preview::{
 };
 pub use problem::{MOST_INTEGRATED, inverted};
 pub use recovered::chosen::{Beside, Chosen};
-pub use recovered::fit::{Attainable, Fit, Judged, Outlier, Residuals, Rival};
+pub use recovered::fit::{Apart, Attainable, Fit, Judged, Outlier, Residuals, Rival};
 pub use recovered::gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
 };

@@ -143,6 +143,22 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same without the entries whose flag, of the same shape as Φ, is not 0, and with all
+    /// others; operators are not shared with it.
+    pub fn leaving_out<'b>(&self, flags: &'b DMatrix<f64>) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        Problem {
+            nuisance: Nuisance {
+                left_out: Some(flags),
+                ..self.nuisance
+            },
+            shared: None,
+            ..*self
+        }
+    }
+
     /// Φ, pixels × spots, W.
     pub fn photographed(&self) -> &'a DMatrix<f64> {
         self.phi

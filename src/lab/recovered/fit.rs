@@ -24,6 +24,7 @@
 //! last steps of the model's integrals move of Φ̂ ([`Factors::moved`]): what these leave over is no
 //! evidence against it.
 
+mod apart;
 mod attainable;
 mod integrated;
 mod residuals;
@@ -39,6 +40,7 @@ use crate::num::statistics::chi_square_quantile;
 use crate::recovery::{
     Determined, Method, Options, Problem, Recovered, RecoveryError, determined, unseen,
 };
+pub use apart::Apart;
 pub use attainable::Attainable;
 use attainable::LeftOver;
 pub use residuals::{Outlier, Residuals};

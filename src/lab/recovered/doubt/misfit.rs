@@ -1,6 +1,6 @@
 //! Photographs that a picture, or any picture, does not explain.
 
-use crate::lab::recovered::fit::{Attainable, Fit, Judged};
+use crate::lab::recovered::fit::{Apart, Attainable, Fit, Judged};
 use crate::num::digits::{figure, freedom, significant};
 use crate::recovery::{Method, Recovered, Weighting};
 
@@ -122,9 +122,41 @@ fn cure(method: Method) -> &'static str {
     }
 }
 
+/// That all photographs but these fit.
+fn without(apart: &Apart, possible: &Fit) -> String {
+    let what = match (apart.are_spots, apart.which.len()) {
+        (true, 1) => "the photograph of spot",
+        (true, _) => "the photographs of spots",
+        (false, 1) => "pixel",
+        (false, _) => "pixels",
+    };
+    let which: Vec<String> = apart.which.iter().map(usize::to_string).collect();
+    let (have, them) = match apart.which.len() {
+        1 => ("has", "it"),
+        _ => ("have", "them"),
+    };
+    let cause = if apart.are_spots {
+        "a spot elsewhere, frames out of order, or light that is in no other frame"
+    } else {
+        "pixels that are hot or dead, or see what the scene does not have"
+    };
+    format!(
+        "DOES NOT FIT, by any method ({}), for {what} {}: {have} {} % of χ² beside a picture of all others, which fits \
+         without {them} (χ²/dof {}): {cause}. Look at {them}, and leave {them} out (--left-out, or the masks of \
+         `phicam import`)",
+        told(possible),
+        which.join(", "),
+        figure(100.0 * apart.share, 2),
+        significant(apart.rest, 3)
+    )
+}
+
 /// No reflectances between 0 and 1 explain the photographs; `sent_on` names occluders whose light
 /// is none of the model's.
 fn contradiction(best: &Attainable, sent_on: Option<&str>) -> String {
+    if let Some(apart) = &best.apart {
+        return without(apart, &best.possible);
+    }
     let told = told(&best.possible);
     let beside = sent_on.map_or(String::new(), |names| {
         format!(
@@ -195,6 +227,7 @@ mod tests {
                 possible: fit(1.0),
                 any: None,
                 brightness: 1.0,
+                apart: None,
             }),
             ..Judged::default()
         };
@@ -236,6 +269,7 @@ mod tests {
             },
             any: None,
             brightness: 1.4,
+            apart: None,
         };
         for best in [
             bright.clone(),

@@ -1,6 +1,6 @@
 //! What the best picture of all can do.
 
-use super::{Certainty, Fit, Known, MOST_ELEMENTS, Residuals, fit};
+use super::{Apart, Certainty, Fit, Known, MOST_ELEMENTS, Residuals, fit};
 use crate::lab::comparison::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::fisher_sf;
@@ -18,6 +18,8 @@ pub struct Attainable {
     /// The photographs over those of a surface that is white throughout, by least squares: at most
     /// 1 for any surface. 1 with a free scale.
     pub brightness: f64,
+    /// Photographs or pixels without which reflectances between 0 and 1 fit; none where none do.
+    pub apart: Option<Apart>,
 }
 
 impl Attainable {
@@ -38,15 +40,14 @@ impl Attainable {
             weighting: WeightRule::Noise,
             ..*options
         };
-        let by = |method: Method| -> Result<Option<Fit>, RecoveryError> {
+        let few = problem.elements() <= MOST_ELEMENTS;
+        let by = |method: Method| -> Result<Option<Recovered>, RecoveryError> {
             let known = found.iter().find(|f| f.method == method);
-            if let Some(known) = known.filter(|_| weighted) {
-                return Ok(fit(problem, noise, known));
+            match known.filter(|_| weighted) {
+                Some(known) => Ok(Some((*known).clone())),
+                None if few => recover(method, problem, &options).map(Some),
+                None => Ok(None),
             }
-            if problem.elements() > MOST_ELEMENTS {
-                return Ok(None);
-            }
-            Ok(fit(problem, noise, &recover(method, problem, &options)?))
         };
         let scale = |f: &&Recovered| f.nuisance.as_ref().and_then(|n| n.scale);
         let free = found.iter().any(|f| scale(f).is_some());
@@ -63,15 +64,21 @@ impl Attainable {
                     possible,
                     any: None,
                     brightness: 1.0,
+                    apart: None,
                 }));
             }
         }
-        let of = |possible: Fit| Self {
-            possible,
-            any: by(Method::JointUnbounded).ok().flatten(),
-            brightness: if free { 1.0 } else { problem.brightness() },
+        let Some(best) = by(Method::Joint)? else {
+            return Ok(None);
         };
-        Ok(by(Method::Joint)?.map(of))
+        let any = || fit(problem, noise, &by(Method::JointUnbounded).ok()??);
+        let apart = || Apart::of(problem, noise, &best, &options);
+        Ok(fit(problem, noise, &best).map(|possible| Self {
+            any: any(),
+            brightness: if free { 1.0 } else { problem.brightness() },
+            apart: if possible.fits || !few { None } else { apart() },
+            possible,
+        }))
     }
 }
 

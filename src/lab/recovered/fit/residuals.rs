@@ -35,6 +35,8 @@ const MOST_FAR: usize = 1000;
 #[derive(Debug, Default)]
 pub struct Residuals {
     pub(super) sums: Vec<f64>,
+    /// The same of columns.
+    pub(super) columns: Vec<f64>,
     pub(super) entries: usize,
     pub(super) left_out: usize,
     /// Pixel, spot, |z| and square of those far off.
@@ -55,6 +57,7 @@ impl Residuals {
         for p in 0..phi.nrows() {
             let mut sum = 0.0;
             self.last.resize(phi.ncols(), 0.0);
+            self.columns.resize(phi.ncols(), 0.0);
             for l in 0..phi.ncols() {
                 let at = (p, l);
                 if stderr[at] <= 0.0 {
@@ -74,6 +77,7 @@ impl Residuals {
                 self.last[l] = signed;
                 self.with_light.add(seen[at], square);
                 sum += square;
+                self.columns[l] += square;
                 if far > FAR && self.far.len() <= MOST_FAR {
                     self.far.push((self.sums.len(), l, far, square));
                 }

@@ -124,3 +124,38 @@ fn an_entry_that_noise_does_not_explain_is_named() {
         }
     }
 }
+
+/// One frame of another spot, or one pixel that is dark in all, is named with the cure, beside
+/// another method's misfit too; none of photographs that are right, and of all frames in another
+/// order.
+#[test]
+fn a_frame_or_pixel_that_is_not_of_the_others_is_named() {
+    let scene = small("bench");
+    let model = MatrixModel::new(&scene, Kernel::Physical, Some([2, 2])).unwrap();
+    for seed in 1..4 {
+        let right = Photographs::relative(&model.phi(), 1e-2, seed);
+        let of = |from: &dyn Fn(usize, usize) -> f64| {
+            let (pixels, spots) = right.phi.shape();
+            Matrix::from_fn(pixels, spots, from)
+        };
+        let spots = right.phi.ncols();
+        let displaced = of(&|p, l| right.phi[(p, if l == 5 { 11 } else { l })]);
+        let hot = of(&|p, l| right.phi[(p, l)] * if p == 3 { 1.5 } else { 1.0 });
+        let permuted = of(&|p, l| right.phi[(p, (5 * l + 3) % spots)]);
+        let all = [
+            (&right.phi, None),
+            (&displaced, Some("photograph of spot 5: has")),
+            (&hot, Some("for pixel 3: has")),
+            (&permuted, None),
+        ];
+        for (k, (phi, due)) in all.into_iter().enumerate() {
+            let own = (Method::JointUnbounded, &Options::default());
+            let found = recovered(&model, phi, (&right.stderr, Certainty::STATED), own);
+            assert_eq!(found.contradicted(), k > 0, "{seed} {k}");
+            let named = found.warnings.iter().find(|w| w.contains("% of χ²"));
+            assert_eq!(named.is_some(), due.is_some(), "{seed} {k} {named:?}");
+            let told = named.map_or("", String::as_str);
+            assert!(told.contains(due.unwrap_or("")), "{seed} {k} {told}");
+        }
+    }
+}
