@@ -56,20 +56,28 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
 fn read_bare_scene(dir: &Path, console: Console) -> Result<Scene, Failure> {
     let path = dir.join(SCENE);
     let scene = console.load_any_scene(&path.to_string_lossy())?;
-    let account = dir.join(CALIBRATION);
-    if account.exists() {
-        let found: serde_json::Value =
-            serde_json::from_slice(&store::read(&account, Record::LARGEST)?).unwrap_or_default();
-        let written = found["scene_sha256"].as_str();
-        if written.is_none_or(|written| store::digest(&path).ok().as_deref() != Some(written)) {
-            console.say(format!(
-                "warning: {} is not what `phicam calibrate` wrote: it, or {}, was changed since",
-                path.display(),
-                account.display()
-            ));
-        }
+    if is_calibrated(dir)? == Some(false) {
+        console.say(format!(
+            "warning: {} is not what `phicam calibrate` wrote: it, or {}, was changed since",
+            path.display(),
+            dir.join(CALIBRATION).display()
+        ));
     }
     Ok(scene)
+}
+
+/// Whether the scene in a folder is as `phicam calibrate` wrote it there, by the digest in its
+/// account; none where there is no account.
+pub(super) fn is_calibrated(dir: &Path) -> Result<Option<bool>, Failure> {
+    let account = dir.join(CALIBRATION);
+    if !account.exists() {
+        return Ok(None);
+    }
+    let found: serde_json::Value =
+        serde_json::from_slice(&store::read(&account, Record::LARGEST)?).unwrap_or_default();
+    let written = found["scene_sha256"].as_str();
+    let there = store::digest(&dir.join(SCENE)).ok();
+    Ok(Some(written.is_some() && written == there.as_deref()))
 }
 
 /// The scene and the account of a run, or where photographs are given, which measured ones come

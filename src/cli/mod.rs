@@ -25,7 +25,7 @@
 //! | `summary.json`, `report.html` | what was found |
 //! | `left_out.npy`, `import.json`, `import.png` | of photographs from `phicam import`: why an entry is left out (0: it counts), f64, (pixels, spots); settings, files, noise and marks; the mean photograph with the view, spots and marks |
 //! | `located/` | what `phicam locate` found: `locate.json`, `locate.csv`, `locate.svg`, `report.html` |
-//! | `calibrated/` | what `phicam calibrate` found: `calibration.json`, `calibration.csv`, `identifiability.csv`, `stages.csv`, `profiles.svg`, `report.html`, and the calibrated `scene.toml` |
+//! | `calibrated/` | what `phicam calibrate` found: `calibration.json`, `calibration.csv`, `identifiability.csv`, `stages.csv`, `profiles.svg`, `report.html`, the calibrated `scene.toml`, and the picture by it with the errors of the geometry in, as `recover` names its files: `joint-gp.npy`, `joint-gp.stderr.npy` (nv, nu), `joint-gp.covariance.npy`, in the unit of `grids` in `calibration.json` |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
 //! | `.replacement/` | a run with other settings that will take the place of this one when it is whole |
@@ -70,6 +70,7 @@ pub mod serve;
 mod settings;
 mod suspicious;
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
@@ -81,7 +82,9 @@ use commands::{
 };
 use console::{Console, complain};
 use failure::{Codes, Failure, Outcome};
+use run_folder::SCENE;
 
+use crate::folder::Record;
 use crate::num::repetition::first_repeated;
 use crate::store::harmless;
 
@@ -92,7 +95,18 @@ fn refuse_undefinable(command: &Command, define: &[(String, String)]) -> Result<
         return Ok(());
     };
     let cause = format!("-D {key} changes a scene, and nothing here names one");
-    let cure = "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against, `expose` -D sensor.KEY=VALUE";
+    let folder = command.of_photographs();
+    let record = |dir: &Path| Record::read(dir).ok().flatten();
+    let cure = match folder.map(|dir| (dir, record(dir))) {
+        Some((_, Some(record))) if record.is_imported() => format!(
+            "the scene of photographs is that of their import: `phicam import … -D {key}=VALUE` into another folder"
+        ),
+        Some((dir, None)) => format!(
+            "write it into {}, which photographs of --phi are taken with",
+            dir.join(SCENE).display()
+        ),
+        _ => "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against, `expose` -D sensor.KEY=VALUE".to_owned(),
+    };
     Err(Failure::usage(cause, cure))
 }
 

@@ -37,13 +37,50 @@ fn a_rendered_scene_is_as_it_is_written() {
         "identifiability.csv",
         "profiles.svg",
         "report.html",
+        "joint-gp.covariance.npy",
     ] {
         assert!(w.path(&format!("run/calibrated/{file}")).exists(), "{file}");
     }
     let _ = w.phicam("scene check run/calibrated/scene.toml").exits(0);
-    let _ = w
-        .phicam("recover run/calibrated --phi run/phi.npy --noise 0.05 --method joint --elements 4x4 -o there -q")
-        .exits(0);
+    // The picture is that of the account, and its errors are those of its covariance.
+    let [picture, stderr, covariance] = ["npy", "stderr.npy", "covariance.npy"]
+        .map(|what| w.matrix(&format!("run/calibrated/joint-gp.{what}")));
+    assert_eq!((picture.shape(), covariance.shape()), ((4, 4), (16, 16)));
+    for k in 0..16 {
+        let at = (k / 4, k % 4);
+        let number = |key: &str| found["grids"][0][key][k].as_f64().unwrap();
+        for (own, want) in [
+            (picture[at], number("values")),
+            (stderr[at], number("stderr")),
+        ] {
+            assert!(
+                (own - want).abs() < 1e-12 * want.abs(),
+                "{k}: {own} for {want}"
+            );
+        }
+        let variance = covariance[(k, k)];
+        assert!(
+            (variance - stderr[at] * stderr[at]).abs() < 1e-9 * variance,
+            "{k}: {variance}"
+        );
+        assert!(
+            stderr[at] * 1.000001 > found["stderr_given"][k].as_f64().unwrap(),
+            "{k}"
+        );
+    }
+    // Another picture by this geometry has not its errors, which is said.
+    let recovered = "recover run/calibrated --phi run/phi.npy --noise 0.05 --method joint --elements 4x4 -o there";
+    let ended = w.phicam(recovered).exits(0);
+    let words = told(&ended.stderr);
+    let is_told =
+        words.contains("was estimated from photographs") && words.contains("joint-gp.stderr.npy");
+    assert!(is_told, "{}", ended.account());
+    let own = w.phicam("recover run --method joint -o own").exits(0);
+    assert!(
+        !own.stderr.contains("estimated from photographs"),
+        "{}",
+        own.account()
+    );
     // A calibrated scene that is no longer what was found is used, and told.
     let recover = "recover run/calibrated --phi run/phi.npy --noise 0.05 --method joint --elements 4x4 -o there";
     let is_told = || w.phicam(recover).exits(0).stderr.contains("was changed");

@@ -69,6 +69,19 @@ fn photographs_become_a_run_that_is_recovered() {
     );
     assert_eq!(w.read("out/import.png")[..4], *b"\x89PNG");
 
+    // Another value of their scene is for another import.
+    for command in [
+        "recover out",
+        "calibrate out --free hinge.angle",
+        "locate out",
+    ] {
+        let line = format!("{command} -D laser.power=1");
+        w.refuses(&line, &["phicam import … -D laser.power=VALUE"]);
+    }
+    let other = PLAIN.replace("-o out", "-o other -D laser.power=1");
+    let _ = w.phicam(&other).exits(0);
+    assert!(w.text("other/scene.toml").contains("power = 1"));
+
     let recovered = w.phicam("recover out --method pinv").exits(0);
     assert!(
         recovered.stderr.contains("no noise model") || w.path("out/recovered/pinv.npy").exists()

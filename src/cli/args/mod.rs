@@ -21,7 +21,7 @@ mod value;
 mod view;
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args as Arguments, Parser, Subcommand};
 
@@ -166,6 +166,16 @@ impl Command {
             | Self::Reproduce(_) => false,
             Self::Scene(args) => !matches!(args.command, SceneCommand::List { .. }),
             _ => true,
+        }
+    }
+
+    /// The folder whose photographs it explains by the scene there.
+    pub(in crate::cli) fn of_photographs(&self) -> Option<&Path> {
+        match self {
+            Self::Recover(args) => args.dir.as_deref(),
+            Self::Calibrate(args) => Some(&args.dir),
+            Self::Locate(args) => Some(&args.dir),
+            _ => None,
         }
     }
 

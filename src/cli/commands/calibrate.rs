@@ -1,10 +1,13 @@
 //! `phicam calibrate`: the geometry, from the photographs.
 
+use std::path::Path;
+
 use super::beside::frame_gain;
 use super::mask::refuse_clipped;
 use super::spelled::Spelled;
 use super::unexplained::{elements, of_files, of_run};
 use crate::cli::args::CalibrateArgs;
+use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::{Failure, NOTHING_KEPT};
 use crate::cli::findings::deliver;
@@ -16,7 +19,9 @@ use crate::cli::{Outcome, progress};
 use crate::folder::write_copies;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{CalibrationPlan, Found, Free, Work};
+use crate::lab::{Calibration, CalibrationPlan, Found, Free, Work};
+use crate::matrix::{Matrix, npy};
+use crate::recovery::Method;
 use crate::report::Invocation;
 use crate::scene::Scene;
 
@@ -72,12 +77,43 @@ pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<
     let asked = invocation(args, &plan.free, &scene);
     let outcome = deliver("calibration", &found, &output, &asked, args.json)?;
     write_copies(&output, &scene)?;
+    write_picture(&output, &calibration)?;
     console.say(format!(
-        "{0}: written; scene.toml there is the calibrated scene: `phicam recover {0}{1}`",
+        "{0}: written; scene.toml there is the calibrated scene, {2}.npy the picture by it, whose errors have those of \
+         the geometry in: `phicam recover {0}{1}` compares other pictures, whose errors have not",
         output.display(),
-        recovering(args, plan.frame_gain)
+        recovering(args, plan.frame_gain),
+        Method::JointGp
     ));
     Ok(outcome)
+}
+
+/// Writes the picture with the calibrated geometry as `phicam recover` names its files,
+/// joint-gp.npy and joint-gp.stderr.npy (nv × nu), joint-gp.covariance.npy (own elements × elements
+/// of all surfaces) where it is made, all with the errors of the geometry; joint-gp-0, … where
+/// several surfaces are hidden. Numbers are those of `grids` in calibration.json.
+fn write_picture(folder: &Path, calibration: &Calibration) -> Result<(), Failure> {
+    let mut first = 0;
+    for (i, grid) in calibration.grids.iter().enumerate() {
+        let [nu, nv] = grid.count;
+        let suffix = if calibration.grids.len() > 1 {
+            format!("-{i}")
+        } else {
+            String::new()
+        };
+        let name = |what: &str| format!("{}{suffix}.{what}", Method::JointGp);
+        for (what, values) in [("npy", &grid.values), ("stderr.npy", &grid.stderr)] {
+            let picture = Matrix::from_row_slice(nv, nu, values);
+            npy::write(&folder.join(name(what)), &picture)?;
+        }
+        let own = name("covariance.npy");
+        match &calibration.covariance {
+            Some(all) => npy::write(&folder.join(own), &all.rows(first, nu * nv).into_owned())?,
+            None => remove_named(folder, &[&own])?,
+        }
+        first += nu * nv;
+    }
+    Ok(())
 }
 
 /// With what the same photographs are recovered by the calibrated scene.

@@ -13,7 +13,7 @@ use crate::cli::Outcome;
 use crate::cli::args::RecoverArgs;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::load_run::read_run_or_scene;
+use crate::cli::load_run::{is_calibrated, read_run_or_scene};
 use crate::cli::run_folder::{PHI, RECOVERED, RunFolder, STDERR, is_of_recovered};
 use crate::folder::{Origin, Record};
 use crate::lab::{Certainty, RecoveredObject, by_trust, unmodelled};
@@ -50,6 +50,14 @@ pub(in crate::cli) fn execute(args: &RecoverArgs, console: Console) -> Result<Ou
         .filter(|_| is_own(args.phi.as_deref(), dir, PHI))
     {
         refuse_unscaled(args, record, &methods(0), console)?;
+    }
+    if record.is_none() && is_calibrated(dir)?.is_some() {
+        console.say(format!(
+            "warning: the geometry of {0} was estimated from photographs by `phicam calibrate`, and its errors are not in \
+             those of the pictures: {0}/{1}.npy is one with them in {1}.stderr.npy",
+            dir.display(),
+            Method::JointGp
+        ));
     }
     let lock = |folder| RunFolder::lock(folder, "phicam recover");
     let _run = args.output.is_none().then(|| lock(dir)).transpose()?;

@@ -144,6 +144,7 @@ impl RunFolder {
         ] {
             let found = self.path.join(name);
             remove_named(&found, files)?;
+            remove_files(&found, is_of_recovered)?;
             let _ = fs::remove_dir(found);
         }
         let validation = self.path.join(VALIDATION);

@@ -47,8 +47,8 @@
 //! coordinate of the plate: MTF 1.000 with the right and with the calibrated geometry, errors over
 //! stated 1.04, 0.96, 0.90 and 1.00, 1.07, 1.13, held 112 of 120
 //! (`tests/physics/calibrated_past.rs`). Where the plate cuts off the beam of a spot without a size
-//! its place has no slope, and the search may not end. Where the scene ends the search goes along its
-//! edge, and it is told which unknown that holds ([`edge`]).
+//! its place has no slope, and the search may not end. Where the scene ends the search goes along
+//! its edge, and it is told which unknown that holds ([`edge`]).
 
 mod averaged;
 mod beforehand;

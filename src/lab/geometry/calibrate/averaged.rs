@@ -34,6 +34,8 @@ pub(super) struct Averaged {
     pub directions: f64,
     /// Variance of each element, the geometry given.
     pub given: DVector<f64>,
+    /// P, elements × elements; none of so many that it is not made.
+    pub covariance: Option<Matrix>,
     /// P AᵀB: −∂ρ̂/∂θ, elements × unknowns.
     pub shift: Matrix,
     /// What speaks against believing its errors, each with its cure.
@@ -85,14 +87,15 @@ impl Problem<'_> {
         } = picture;
         let errors = standard_error.ok_or(LabError::DARK)?;
         // Of so many elements that there is no covariance by the likeliest prior alone.
-        let shift = match covariance {
-            Some(p) => product(&p, &Columns::side(columns)) * scale,
+        let shift = match &covariance {
+            Some(p) => product(p, &Columns::side(columns)) * scale,
             None => &best.slope.shift / scale,
         };
         Ok(Averaged {
             rho: reflectance,
             directions: effective_rank,
             given: errors.component_mul(&errors),
+            covariance,
             shift,
             warnings: warnings.into_iter().flatten().collect(),
         })

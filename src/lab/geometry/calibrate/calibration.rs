@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{AtEdge, Beforehand, Direction, FinerElements, Identified, Profile, Stage};
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::lab::geometry::located::Grid;
+use crate::matrix::Matrix;
 use crate::recovery::ErrorField;
 
 /// Of a prior's variance what is always counted as told: an error is known to no better.
@@ -148,6 +149,10 @@ pub struct Calibration {
     pub grids: Vec<Grid>,
     /// Its standard errors with the geometry given, in the order of the grids.
     pub stderr_given: Vec<f64>,
+    /// Covariance of the elements of all grids, those of the geometry included; none of so many
+    /// elements that there is none with the geometry given.
+    #[serde(skip)]
+    pub covariance: Option<Matrix>,
     /// Directions of the picture that the photographs determine.
     pub directions: f64,
     /// What speaks against believing the errors of the picture, each with its cure.

@@ -6,8 +6,8 @@
 //! > (F + Λ)_oo δ_o = −(slope + Λθ)_o − (F + Λ)_oS d_S,   o all but S,
 //!
 //! so that what is stopped stops nothing else (an active set: Nocedal and Wright, Numerical
-//! Optimization, 16.5). Taken one after the other, every move that still gives a scene is whole, and
-//! one that does not goes as far as the scene does.
+//! Optimization, 16.5). Taken one after the other, every move that still gives a scene is whole,
+//! and one that does not goes as far as the scene does.
 
 use nalgebra::DVector;
 use serde::Serialize;

@@ -194,6 +194,7 @@ impl CalibrationPlan {
             starts,
             grids: grids.collect(),
             stderr_given: picture.given.iter().map(|x| x.sqrt()).collect(),
+            covariance: picture.covariance.map(|given| given + moved),
             directions: picture.directions,
             picture_warnings: picture.warnings,
             correlation: truth.and_then(|t| correlation(rho.as_slice(), t)),

@@ -7,6 +7,7 @@ mod edge;
 mod errors;
 mod estimates;
 mod light_left_out;
+mod named;
 mod pictures;
 mod spread;
 

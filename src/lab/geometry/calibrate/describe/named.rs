@@ -62,8 +62,8 @@ impl Calibration {
         ordered(self.geometry(), |_| 0.0)
     }
 
-    /// `said` of those that the first sentence names: all of few, else not the single spots that are
-    /// within their errors where the scene has them, of which it tells how many they are.
+    /// `said` of those that the first sentence names: all of few, else not the single spots that
+    /// are within their errors where the scene has them, of which it tells how many they are.
     pub(super) fn first(&self, said: impl Fn(&Calibrated) -> String) -> String {
         let off = |f: &Calibrated| f.value.abs() / f.stderr;
         let is_few = self.geometry().count() <= LISTED;

@@ -123,8 +123,8 @@ impl Calibration {
         )]
     }
 
-    /// The picture and its errors; of a free scale, of which only ratios are told, over its brightest
-    /// element.
+    /// The picture and its errors; of a free scale, of which only ratios are told, over its
+    /// brightest element.
     pub(super) fn gallery(&self) -> Gallery {
         let all = self.grids.iter().flat_map(|g| &g.values);
         let brightest = all.fold(0.0, |most: f64, x| most.max(*x));
