@@ -284,7 +284,8 @@ fn wrong_usage_has_its_own_code() {
     for (line, word) in [
         ("shard job --index 2", "beyond the 2 shards"),
         ("shard job --index two", "--index"),
-        ("shard job", "--index"),
+        ("shard job", "cure: give --index"),
+        ("shard job 1", "cure: write it behind its option: --index 1"),
         ("shard nowhere --index 0", "not the folder of a plan"),
         ("status nowhere", "not the folder of a plan"),
         ("merge job", "--output"),

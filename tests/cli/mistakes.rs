@@ -38,8 +38,6 @@ const MISTAKES: &[(&str, &[&str])] = &[
     ("model tiny.toml", &["--output", "-o FOLDER"]),
     ("render -o new", &["<SCENE>", "phicam scene list"]),
     ("recover", &["<DIR>", "`phicam recover out`"]),
-    ("shard plan 0", &["unexpected argument '0'", "--index 0"]),
-    ("shard plan", &["--index", "cure: give --index"]),
     // Commands.
     ("rum tiny.toml", &["'rum'", "run"]),
     ("guide", &["'guide'", "src/cli/guide", "phicam help scene"]),
