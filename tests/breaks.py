@@ -3517,6 +3517,15 @@ BREAKS = [
         "lab::recovered::doubt::tests::misfit::a_frame_or_pixel_that_is_not_of_the_others_is_named",
         46,
     ),
+    Break(
+        "Light of occluders is named where nothing else explains a difference",
+        "src/lab/run/verdict.rs",
+        "sent_on.filter(|_| cause.starts_with(NO_SINGLE));",
+        "sent_on.filter(|_| !cause.is_empty());",
+        "lib",
+        "lab::run::verdict::causes::tests::light_of_occluders_is_named_where_nothing_else_explains_it",
+        46,
+    ),
 ]
 
 

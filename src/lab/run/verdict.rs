@@ -12,6 +12,7 @@ use crate::lab::uncertainty::certainty::fits_better;
 use crate::lab::uncertainty::tails::missed;
 use crate::lab::uncertainty::with_light::goes_with_light;
 use crate::num::digits::{figure, significant};
+use causes::NO_SINGLE;
 
 /// Part of the noise up to which bounds of the model change no χ² to speak of.
 const SMALL: f64 = 0.1;
@@ -190,7 +191,9 @@ impl Agreement {
     pub(super) fn cause(&self, score: &Score) -> String {
         let level = share(self.significance, true);
         let cause = score.cause(self.chi2_per_dof, self.dof, level);
-        let beside = self.sent_on.as_ref().map_or(String::new(), |names| {
+        let sent_on = self.sent_on.as_ref();
+        let sent_on = sent_on.filter(|_| cause.starts_with(NO_SINGLE));
+        let beside = sent_on.map_or(String::new(), |names| {
             format!(
                 "light that {names} send on, which the model does not have (`phicam recover --occluder-light` estimates \
                  it beside the picture); if it is not that: "

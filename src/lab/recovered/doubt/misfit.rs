@@ -160,7 +160,7 @@ fn contradiction(best: &Attainable, sent_on: Option<&str>) -> String {
     let told = told(&best.possible);
     let beside = sent_on.map_or(String::new(), |names| {
         format!(
-            " Most likely light that {names} send on, which the model does not have: estimate it beside the \
+            " Light that {names} send on, which the model does not have, may be it: estimate it beside the \
              picture (--occluder-light). If that does not help:"
         )
     });

@@ -14,7 +14,7 @@ const STRAIGHT: f64 = 10.0;
 /// |z| of a parameter after the picture was fitted beyond which that misses it: 1 % of one
 /// parameter chosen among a hundred.
 const MISSES: f64 = 3.9;
-const NO_SINGLE: &str = "no single parameter of the scene explains it";
+pub(super) const NO_SINGLE: &str = "no single parameter of the scene explains it";
 /// Causes that are named beside the most likely one.
 const NAMED: usize = 3;
 

@@ -118,3 +118,25 @@ fn a_picture_is_named_by_what_it_explains() {
         assert!(words.contains(&format!("χ²/dof {left}")), "{words}");
     }
 }
+
+/// Light of occluders that the model does not have is named first where no single parameter
+/// explains the difference, and not where one does.
+#[test]
+fn light_of_occluders_is_named_where_nothing_else_explains_it() {
+    let mut agreement = crate::lab::sample::run("bench").agreement.unwrap();
+    (agreement.chi2_per_dof, agreement.dof) = (1e4, 1000.0);
+    agreement.sent_on = Some("`floor`".to_owned());
+    let told = |left: f64| {
+        let score = Score {
+            likely: vec![deviation(left)],
+            ..Score::default()
+        };
+        agreement.cause(&score)
+    };
+    assert!(
+        told(9e3).starts_with("light that `floor` send on"),
+        "{}",
+        told(9e3)
+    );
+    assert!(told(1.0).starts_with("hinge angle"), "{}", told(1.0));
+}
