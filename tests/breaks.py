@@ -3419,15 +3419,6 @@ BREAKS = [
         46,
     ),
     Break(
-        "A difference at an edge takes the other side",
-        "src/lab/geometry/calibrate/geometry.rs",
-        "over: ends.map_or(step, |_| more - less),",
-        "over: 2.0 * step,",
-        "lib",
-        "lab::geometry::calibrate::tests::edge::a_difference_at_an_edge_takes_the_other_side",
-        46,
-    ),
-    Break(
         "A picture of a free scale is drawn over its brightest element",
         "src/lab/geometry/calibrate/describe/tables.rs",
         "values: values.iter().map(|x| x / unit).collect(),",
@@ -3497,15 +3488,6 @@ BREAKS = [
         "let beside = sent_on.filter(|_| false).map_or(",
         "lib",
         "lab::recovered::doubt::misfit::tests::light_of_occluders_is_the_first_cause",
-        46,
-    ),
-    Break(
-        "No pattern is kept that fits worse than that of the probabilities",
-        "src/recovery/joint/patterns/two_valued.rs",
-        "|| found.misfit >= best.misfit",
-        "|| true",
-        "lib",
-        "recovery::joint::patterns::two_valued::tests::no_pattern_is_kept_that_fits_worse_than_the_probabilities",
         46,
     ),
     Break(

@@ -115,11 +115,11 @@ impl Search<'_> {
 }
 
 /// Those of `others` that are not told from the likeliest, of errors σ_L and σ_J where known.
-pub(super) fn not_told<'p>(
+pub(super) fn not_told(
     likeliest: f64,
-    others: &'p [Place],
+    others: &[Place],
     errors: [Option<f64>; 2],
-) -> impl Iterator<Item = &'p Place> {
+) -> impl Iterator<Item = &Place> {
     let ratio = match errors {
         [Some(curvature), Some(frames)] => (frames / curvature).max(1.0),
         _ => 1.0,

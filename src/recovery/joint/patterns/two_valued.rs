@@ -20,7 +20,7 @@
 use super::fields::{self, Fields};
 use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
-use super::pattern_search::{Found, Levels, Pattern, Search};
+use super::pattern_search::{Found, Levels, Search};
 use super::pattern_sums::Summed;
 use super::{enumerated, levels, neighbours, pattern_lattice, sampled, spread};
 use crate::recovery::joint::coordinates::Coordinates;
@@ -219,32 +219,21 @@ pub(in crate::recovery) fn recover(
         status = "the pattern that is expected to have most elements right";
         best = search.fit(light.clone());
     }
+    let objective = 0.5 * best.misfit;
+    let shown = best.values();
     let (sizes, assumed) = if settled_if_alike {
         (&sizes[..], alike.as_ref())
     } else {
         (&even[..], summed.as_ref())
     };
-    let about = |best: &Pattern| {
-        let exact = assumed.filter(|_| given.is_none() && options.spreads);
-        let of = |exact| {
-            let own = (&best.light[..], &best.values());
-            spread::sum(&likelihood, (sizes, exact), own)
-        };
-        exact.map(of).transpose()
+    let spread = match assumed {
+        Some(exact) if given.is_none() && options.spreads => Some(spread::sum(
+            &likelihood,
+            (sizes, exact),
+            (&best.light, &shown),
+        )?),
+        _ => None,
     };
-    let mut spread = about(&best)?;
-    // Where elements may differ from their levels they tell patterns that exact levels hide.
-    while let Some(own) = spread.as_ref().filter(|_| !settled_if_alike) {
-        let likelier = own.moments.light().iter().map(|p| *p > 0.5).collect();
-        let found = search.descend(likelier, &mut changes);
-        if !search.can(&found) || found.misfit >= best.misfit {
-            break;
-        }
-        best = found;
-        spread = about(&best)?;
-    }
-    let objective = 0.5 * best.misfit;
-    let shown = best.values();
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
     let converged = assumed.filter(|exact| exact.sum.converged());
     recovered.standard_error = converged.map(|exact| match &spread {
