@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::beside::frame_gain;
 use super::mask::refuse_clipped;
+use super::recovered::of_surface;
 use super::spelled::Spelled;
 use super::unexplained::{elements, of_files, of_run};
 use crate::cli::args::CalibrateArgs;
@@ -96,11 +97,7 @@ fn write_picture(folder: &Path, calibration: &Calibration) -> Result<(), Failure
     let mut first = 0;
     for (i, grid) in calibration.grids.iter().enumerate() {
         let [nu, nv] = grid.count;
-        let suffix = if calibration.grids.len() > 1 {
-            format!("-{i}")
-        } else {
-            String::new()
-        };
+        let suffix = of_surface([i, calibration.grids.len()]);
         let name = |what: &str| format!("{}{suffix}.{what}", Method::JointGp);
         for (what, values) in [("npy", &grid.values), ("stderr.npy", &grid.stderr)] {
             let picture = Matrix::from_row_slice(nv, nu, values);

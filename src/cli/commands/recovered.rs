@@ -129,11 +129,7 @@ pub(super) fn write(
         }
     }
     for (i, surface) in surfaces.iter().enumerate() {
-        let suffix = if surfaces.len() > 1 {
-            format!("-{i}")
-        } else {
-            String::new()
-        };
+        let suffix = of_surface([i, surfaces.len()]);
         let named = |name: &str, what: &str| format!("{name}{suffix}.{what}");
         let file = |name: &str, what: &str| folder.join(named(name, what));
         let mut surfaces = scene.iter().flat_map(|scene| &scene.surfaces);
@@ -204,6 +200,16 @@ pub(super) fn write(
         }
     }
     Ok(())
+}
+
+/// What a name of a file has behind that of its method: the number of the surface, where there are
+/// several.
+pub(super) fn of_surface([number, count]: [usize; 2]) -> String {
+    if count > 1 {
+        format!("-{number}")
+    } else {
+        String::new()
+    }
 }
 
 /// What is known of the uncertainty of `object`, in the order of [`UNCERTAINTIES`].

@@ -228,6 +228,7 @@ pub(super) fn likeliest(
         Ok::<_, LabError>(found.map_or(dark, |fit| [fit.log_likelihood, fit.misfit]))
     };
     let stated: Vec<usize> = (0..sides.len()).collect();
+    let as_stated = fit(sides, &stated, None)?;
     let found = all.par_iter().map(|order| {
         // Frames are what they are in any order; pixels see other light in other places.
         if order.frames == stated {
@@ -239,10 +240,14 @@ pub(super) fn likeliest(
                 common: common.as_ref(),
             };
             let found = fit(&Sides::new(turned, terms.camera)?, &stated, None)?;
-            Ok([found, fit(sides, &stated, None)?])
+            Ok([found, as_stated])
         } else {
             let out = order.left_over.filter(|_| seen.common.is_none());
-            Ok([fit(sides, &order.frames, out)?, fit(sides, &stated, out)?])
+            let own = match out {
+                Some(_) => fit(sides, &stated, out)?,
+                None => as_stated,
+            };
+            Ok([fit(sides, &order.frames, out)?, own])
         }
     });
     let found: Vec<[[f64; 2]; 2]> = found.collect::<Result<_, LabError>>()?;
