@@ -3508,6 +3508,33 @@ BREAKS = [
         "lab::run::verdict::causes::tests::light_of_occluders_is_named_where_nothing_else_explains_it",
         46,
     ),
+    Break(
+        "A place that photographs do not tell from the likeliest is told",
+        "src/lab/geometry/calibrate/elsewhere.rs",
+        "less_likely <= NOT_TOLD * ratio * ratio",
+        "less_likely <= -NOT_TOLD * ratio * ratio",
+        "lib",
+        "lab::geometry::calibrate::tests::elsewhere::a_place_that_makes_the_same_photographs_is_told",
+        48,
+    ),
+    Break(
+        "A surface of another size than the scene says is told",
+        "src/lab/geometry/located/resized.rs",
+        "let Some(top) = top.filter(|top| top.log_likelihood() > least)",
+        "let Some(top) = top.filter(|top| top.log_likelihood() < least)",
+        "lib",
+        "lab::geometry::located::tests::told::another_size_of_the_surface_is_told",
+        48,
+    ),
+    Break(
+        "A difference at an edge of the scene is over the step that is taken",
+        "src/lab/geometry/calibrate/geometry.rs",
+        "over: ends.map_or(step, |_| more - less),",
+        "over: ends.map_or(step, |_| 2.0 * step),",
+        "lib",
+        "lab::geometry::calibrate::tests::edge::a_difference_at_an_edge_takes_the_other_side",
+        48,
+    ),
 ]
 
 

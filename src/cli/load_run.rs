@@ -110,7 +110,7 @@ fn folder_meant(given: &Path) -> String {
         ),
         _ if given.join("phi.npy").is_file() && given.join("scene.toml").is_file() => {
             format!(
-                "photographs that phicam did not write: `phicam recover`, `calibrate` and `validate` (with --stderr) take \
+                "photographs that phicam did not write: `phicam recover`, `calibrate`, `locate` and `validate` (with --stderr) take \
                  them with `--phi {}`, other commands take the folder that `phicam import` makes of the camera's files",
                 given.join("phi.npy").display()
             )

@@ -19,6 +19,8 @@ use crate::transport::{Control, Tally};
 const WORDS: usize = 20;
 /// What is done, the bar, its share and the time that is left.
 const TEMPLATE: &str = "{msg} {wide_bar} {percent:>3} % {left}\n{rate}";
+/// Time between two drawings.
+const TICK: Duration = Duration::from_millis(200);
 /// Time between two looks at a standard error at the least; and it takes at most one part in
 /// [`SHARE`] of the time.
 const LOOK: Duration = Duration::from_millis(200);
@@ -34,6 +36,19 @@ pub(super) fn run<T>(
     let bar = start(console, what, work);
     let done = act(counting(&|n| bar.inc(n)));
     bar.finish_and_clear();
+    done
+}
+
+/// Does `act`, whose parts nobody counts, beside a clock.
+pub(super) fn clocked<T>(console: Console, what: &str, act: impl FnOnce() -> T) -> T {
+    let clock = bar_on(console, None);
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
+        clock.set_style(style);
+    }
+    clock.set_message(shortened(&harmless(what)));
+    clock.enable_steady_tick(TICK);
+    let done = act();
+    clock.finish_and_clear();
     done
 }
 
@@ -70,18 +85,23 @@ fn bar(
     total: u64,
     rate: impl Fn(&ProgressState, &mut dyn Write) + Clone + Send + Sync + 'static,
 ) -> ProgressBar {
+    let bar = bar_on(console, Some(total));
+    if let Some(style) = style(rate) {
+        bar.set_style(style);
+    }
+    bar.set_message(shortened(&harmless(what)));
+    bar.enable_steady_tick(TICK);
+    bar
+}
+
+/// On standard error, of so much work; on nothing with `--quiet`.
+fn bar_on(console: Console, total: Option<u64>) -> ProgressBar {
     let target = if console.quiet {
         ProgressDrawTarget::hidden()
     } else {
         ProgressDrawTarget::stderr()
     };
-    let bar = ProgressBar::with_draw_target(Some(total), target);
-    if let Some(style) = style(rate) {
-        bar.set_style(style);
-    }
-    bar.set_message(shortened(&harmless(what)));
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
+    ProgressBar::with_draw_target(total, target)
 }
 
 fn style(

@@ -184,12 +184,12 @@ pub use comparison::validation::{Against, Integration, Validation, validate};
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
 pub use geometry::calibrate::{
-    AtEdge, Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, FinerElements, Free,
-    Identified, Profile, Stage, Starts,
+    AtEdge, Beforehand, Calibrated, Calibration, CalibrationPlan, Direction, Elsewhere,
+    FinerElements, Free, Identified, Profile, Stage, Starts,
 };
 pub use geometry::light_left_out::LightLeftOut;
 pub use geometry::located::{
-    Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order,
+    Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order, Resized,
 };
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,

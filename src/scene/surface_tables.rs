@@ -199,13 +199,18 @@ impl Surface {
                 [nu as usize, nv as usize]
             }
             (Role::Hidden, None) => {
+                let faces = matches!(shape, Shape::Instance(_));
                 return Err(Fault::new(
                     keys![],
                     format!(
                         "hidden surface `{}` does not say into how many elements it is divided",
                         table.name
                     ),
-                    "add `elements = [8, 8]` (along u and v)",
+                    if faces {
+                        "add `elements = \"faces\"`, or `elements = [8, 8]` along its texture coordinates"
+                    } else {
+                        "add `elements = [8, 8]` (along u and v)"
+                    },
                 ));
             }
             (_, None) => [0, 0],

@@ -51,6 +51,16 @@ fn a_rendered_surface_is_where_the_scene_has_it() {
         .exits(0);
     let other: serde_json::Value = serde_json::from_str(&again.stdout).unwrap();
     assert_eq!(found, other);
+    // From files of their own, beside a scene of any folder, they are at the same place.
+    std::fs::create_dir(w.path("beside")).unwrap();
+    w.write("beside/scene.toml", w.text("run/scene.toml"));
+    let files = "--phi run/phi.npy --stderr run/phi.stderr.npy --replicates 32 --left-out run/phi.tails.npy";
+    let _ = w
+        .phicam(&line.replace("run", &format!("beside {files}")))
+        .exits(0);
+    let other = w.json("beside/located/locate.json");
+    let off = other["size"].as_f64().unwrap() - number("size");
+    assert!(off.abs() < 0.3 * error, "{off} {error}");
 }
 
 /// Photographs whose order was changed are not believed; exit code 1.

@@ -4,25 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
-use super::value::{count, elements, whole};
-use super::{OcclusionArgs, choice};
-use crate::lab::{Free, Integration};
+use super::PhotographsArgs;
+use super::value::whole;
+use crate::lab::Free;
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct CalibrateArgs {
-    /// Folder of a run or of an import; with --phi a folder with a scene.toml is enough
-    pub dir: PathBuf,
-    /// Φcam, pixels × spots, in place of DIR/phi.npy: photographs of which DIR/scene.toml is only
-    /// thought to be the geometry
-    #[arg(long, value_name = "FILE")]
-    pub phi: Option<PathBuf>,
-    /// Its standard errors; without them its noise is unknown
-    #[arg(long, value_name = "FILE", requires = "phi")]
-    pub stderr: Option<PathBuf>,
-    /// Replicates from which --stderr was estimated, at least 2; those of fewer than 32 are pooled
-    /// over pixels and spots where these say more. Known errors unless given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "stderr")]
-    pub replicates: Option<u32>,
+    #[command(flatten)]
+    pub photographs: PhotographsArgs,
     /// Folder for the results; DIR/calibrated unless given
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
@@ -42,26 +31,8 @@ pub(in crate::cli) struct CalibrateArgs {
     pub free_scale: bool,
     /// Where the noise is not known: take what is left over for noise of single pixels and a field
     /// of errors that neighbours share, and say how much likelier that is
-    #[arg(long)]
+    #[arg(long, conflicts_with = "background")]
     pub error_field: bool,
-    /// Elements along u and v; the scene's unless given, or 12x12 where those are more than 256
-    #[arg(long, value_name = "N", value_parser = elements)]
-    pub elements: Option<[usize; 2]>,
-    #[command(flatten)]
-    pub occlusion: OcclusionArgs,
-    /// How the model integrates
-    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "quadrature")]
-    pub integration: Integration,
-    /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8
-    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]
-    pub frame_polynomial: Option<u8>,
-    /// Other light that all frames share, unknown in each pixel
-    #[arg(long, conflicts_with_all = ["frame_polynomial", "error_field"])]
-    pub background: bool,
-    /// Entries that do not count, pixels × spots: those that are not 0; left_out.npy or
-    /// phi.tails.npy of the run unless given
-    #[arg(long, value_name = "FILE")]
-    pub left_out: Option<PathBuf>,
     /// Starts: the first where the scene has everything, the others at random, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub starts: u16,
@@ -72,12 +43,6 @@ pub(in crate::cli) struct CalibrateArgs {
     /// Seed of the starts
     #[arg(long, default_value_t = 1, value_parser = whole)]
     pub seed: u64,
-    /// Threads; all cores unless given. They do not change a bit of the results
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub threads: Option<usize>,
-    /// Print the results as JSON
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// "NAME" or "NAME=SIGMA".

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 use clap::builder::TypedValueParser;
 
-use super::value::{count, elements, range, whole};
-use super::{OcclusionArgs, choice};
-use crate::lab::{Integration, LOCATABLE};
+use super::value::{range, whole};
+use super::{PhotographsArgs, choice};
+use crate::lab::LOCATABLE;
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct LocateArgs {
-    /// Folder of a run or of an import
-    pub dir: PathBuf,
+    #[command(flatten)]
+    pub photographs: PhotographsArgs,
     /// Folder for the results; DIR/located unless given
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
@@ -26,24 +26,6 @@ pub(in crate::cli) struct LocateArgs {
     /// Sizes that are tried at first, 3 to 1000
     #[arg(long, value_name = "N", default_value_t = 17, value_parser = clap::value_parser!(u16).range(3..=1000))]
     pub steps: u16,
-    /// Elements along u and v; the scene's unless given, or 12x12 where those are more than 256
-    #[arg(long, value_name = "N", value_parser = elements)]
-    pub elements: Option<[usize; 2]>,
-    #[command(flatten)]
-    pub occlusion: OcclusionArgs,
-    /// How the model integrates
-    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "quadrature")]
-    pub integration: Integration,
-    /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8
-    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]
-    pub frame_polynomial: Option<u8>,
-    /// Other light that all frames share, unknown in each pixel
-    #[arg(long, conflicts_with = "frame_polynomial")]
-    pub background: bool,
-    /// Entries that do not count, pixels × spots: those that are not 0; left_out.npy or
-    /// phi.tails.npy of the run unless given
-    #[arg(long, value_name = "FILE")]
-    pub left_out: Option<PathBuf>,
     /// Random orders of the spots that are tried, up to 1000000; 999 or more reach p = 0.001, 0
     /// leaves that question out
     #[arg(long, value_name = "N", default_value_t = 999, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
@@ -51,12 +33,6 @@ pub(in crate::cli) struct LocateArgs {
     /// Seed of these orders
     #[arg(long, default_value_t = 1, value_parser = whole)]
     pub seed: u64,
-    /// Threads; all cores unless given. They do not change a bit of the results
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub threads: Option<usize>,
-    /// Print the results as JSON
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// One of the names of what may be looked for.

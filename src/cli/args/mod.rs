@@ -8,6 +8,7 @@ mod import;
 mod locate;
 mod many;
 mod new;
+mod photographs;
 mod recover;
 mod reproduce;
 mod scene;
@@ -38,6 +39,7 @@ pub(in crate::cli) use import::ImportArgs;
 pub(in crate::cli) use locate::LocateArgs;
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use new::{CompletionsArgs, ManArgs, NewArgs};
+pub(in crate::cli) use photographs::PhotographsArgs;
 pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use scene::{SceneArgs, SceneCommand};
@@ -90,8 +92,8 @@ pub(in crate::cli) enum Command {
     /// their spots: exit 0 found, 1 not, or the photographs refute what was found, 2 error
     Locate(LocateArgs),
     /// Estimate the geometry itself from the photographs, whatever the picture: where the hidden
-    /// surface, spots, view, camera, occluders are, with errors: exit 0 found, 1 the photographs
-    /// refute it, 2 error
+    /// surface, spots, view, camera, occluders are, with errors: exit 0 found, 1 not, another place
+    /// does as well or the photographs refute it, 2 error
     Calibrate(Box<CalibrateArgs>),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
@@ -173,8 +175,8 @@ impl Command {
     pub(in crate::cli) fn of_photographs(&self) -> Option<&Path> {
         match self {
             Self::Recover(args) => args.dir.as_deref(),
-            Self::Calibrate(args) => Some(&args.dir),
-            Self::Locate(args) => Some(&args.dir),
+            Self::Calibrate(args) => Some(&args.photographs.dir),
+            Self::Locate(args) => Some(&args.photographs.dir),
             _ => None,
         }
     }

@@ -3,16 +3,14 @@
 use std::path::Path;
 
 use super::beside::frame_gain;
-use super::mask::refuse_clipped;
 use super::recovered::of_surface;
 use super::spelled::Spelled;
-use super::unexplained::{elements, of_files, of_run};
+use super::unexplained::{asked, elements, photographs, scene_of};
 use crate::cli::args::CalibrateArgs;
 use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::{Failure, NOTHING_KEPT};
 use crate::cli::findings::deliver;
-use crate::cli::load_run::read_run_or_scene;
 use crate::cli::output;
 use crate::cli::process::pool;
 use crate::cli::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
@@ -27,36 +25,20 @@ use crate::report::Invocation;
 use crate::scene::Scene;
 
 pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
-    let (scene, record) = read_run_or_scene(&args.dir, args.phi.as_deref(), console)?;
-    let own = record.as_ref().filter(|_| args.phi.is_none());
-    let origin = own.map(|record| &record.origin);
+    let of = &args.photographs;
+    let (scene, record) = scene_of(of, console)?;
+    let origin = record.as_ref().map(|record| &record.origin);
     let plan = CalibrationPlan {
         frame_gain: frame_gain(args.frame_gain, origin, console),
         ..plan(args, &scene, console)
     };
     need::calibrate(&scene, plan.elements)?;
-    let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
-    let photographs = match (&args.phi, &record) {
-        (None, Some(record)) => {
-            let beside = (polynomial, args.background);
-            of_run(&args.dir, (&scene, record), left_out, beside)?
-        }
-        (phi, _) => {
-            let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
-            if args.phi.is_some() && left_out.is_none() {
-                refuse_clipped(&phi, &scene, "")?;
-            }
-            let beside = [args.stderr.as_deref(), left_out];
-            of_files(&phi, beside, &scene, (polynomial, args.replicates))?
-        }
-    };
-    let output = args
-        .output
-        .clone()
-        .unwrap_or_else(|| args.dir.join(CALIBRATED));
+    let photographs = photographs(of, (&scene, record.as_ref()))?;
+    let output = args.output.clone();
+    let output = output.unwrap_or_else(|| of.dir.join(CALIBRATED));
     output::refuse_run(&output)?;
     let lock = RunFolder::lock(&output, "phicam calibrate")?;
-    let pool = pool(args.threads)?;
+    let pool = pool(of.threads)?;
     let what = format!("calibrate {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
         pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
@@ -75,8 +57,8 @@ pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<
         finding: calibration.describe(),
         agrees: calibration.is_found(),
     };
-    let asked = invocation(args, &plan.free, &scene);
-    let outcome = deliver("calibration", &found, &output, &asked, args.json)?;
+    let again = invocation(args, &plan.free, &scene);
+    let outcome = deliver("calibration", &found, &output, &again, of.json)?;
     write_copies(&output, &scene)?;
     write_picture(&output, &calibration)?;
     console.say(format!(
@@ -115,18 +97,19 @@ fn write_picture(folder: &Path, calibration: &Calibration) -> Result<(), Failure
 
 /// With what the same photographs are recovered by the calibrated scene.
 fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>) -> Spelled {
-    let own = |name: &str| Some(args.dir.join(name)).filter(|file| file.exists());
-    let (phi, stderr) = match &args.phi {
-        Some(phi) => (phi.clone(), args.stderr.clone()),
-        None => (args.dir.join(PHI), own(STDERR)),
+    let of = &args.photographs;
+    let own = |name: &str| Some(of.dir.join(name)).filter(|file| file.exists());
+    let (phi, stderr) = match &of.phi {
+        Some(phi) => (phi.clone(), of.stderr.clone()),
+        None => (of.dir.join(PHI), own(STDERR)),
     };
     Spelled::default()
         .file("--phi", Some(&phi))
         .file("--stderr", stderr.as_deref())
-        .file("--left-out", args.left_out.as_deref())
-        .maybe("--replicates", args.replicates)
-        .maybe("--frame-polynomial", args.frame_polynomial)
-        .flag("--background", args.background)
+        .file("--left-out", of.left_out.as_deref())
+        .maybe("--replicates", of.replicates)
+        .maybe("--frame-polynomial", of.frame_polynomial)
+        .flag("--background", of.background)
         .flag("--free-scale", args.free_scale)
         .maybe("--method", args.error_field.then_some("joint-gp"))
         .flag("--error-field", args.error_field)
@@ -135,15 +118,16 @@ fn recovering(args: &CalibrateArgs, frame_gain: Option<f64>) -> Spelled {
 
 /// What is to be done, with what is not given.
 fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPlan {
+    let of = &args.photographs;
     CalibrationPlan {
         free: free(&args.free, scene),
         frame_gain: args.frame_gain,
         is_scale_free: args.free_scale,
         error_field: args.error_field,
-        background: args.background,
-        elements: elements(args.elements, scene, console),
-        occlusion: args.occlusion.occlusion(),
-        integration: args.integration,
+        background: of.background,
+        elements: elements(of.elements, scene, console),
+        occlusion: of.occlusion.occlusion(),
+        integration: of.integration,
         starts: usize::from(args.starts),
         spread: args.spread,
         seed: args.seed,
@@ -180,22 +164,14 @@ fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation 
         None => f.name.clone(),
     };
     let free: Vec<String> = free.iter().map(of).collect();
-    Spelled::default()
+    let options = Spelled::default()
         .with("--free", free.join(","))
         .with("--starts", args.starts)
         .with("--spread", args.spread)
         .with("--seed", args.seed)
-        .with("--integration", args.integration)
-        .file("--phi", args.phi.as_deref())
-        .file("--stderr", args.stderr.as_deref())
-        .maybe("--replicates", args.replicates)
         .maybe("--frame-gain", args.frame_gain)
         .flag("--free-scale", args.free_scale)
-        .flag("--error-field", args.error_field)
-        .flag("--background", args.background)
-        .pair("--elements", args.elements, "x")
-        .maybe("--frame-polynomial", args.frame_polynomial)
-        .file("--left-out", args.left_out.as_deref())
-        .flag("--no-occlusion", args.occlusion.no_occlusion)
-        .of_folder("calibrate", &args.dir, scene)
+        .flag("--error-field", args.error_field);
+    let of = &args.photographs;
+    asked(of, options).of_folder("calibrate", &of.dir, scene)
 }

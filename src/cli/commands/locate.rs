@@ -1,12 +1,11 @@
 //! `phicam locate`: where the hidden surface is.
 
 use super::spelled::Spelled;
-use super::unexplained::{elements, of_run};
+use super::unexplained::{asked, elements, photographs, scene_of};
 use crate::cli::args::LocateArgs;
 use crate::cli::console::Console;
 use crate::cli::failure::{Failure, NOTHING_KEPT};
 use crate::cli::findings::deliver;
-use crate::cli::load_run::read_run;
 use crate::cli::output;
 use crate::cli::process::pool;
 use crate::cli::run_folder::{LOCATED, RunFolder};
@@ -22,22 +21,16 @@ const PART: f64 = 0.3;
 const DEGREES: f64 = 15.0;
 
 pub(in crate::cli) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Failure> {
-    let (scene, record) = read_run(&args.dir, console)?;
+    let of = &args.photographs;
+    let (scene, record) = scene_of(of, console)?;
     let plan = plan(args, &scene, console);
     need::locate(&scene, plan.elements)?;
-    let photographs = of_run(
-        &args.dir,
-        (&scene, &record),
-        args.left_out.as_deref(),
-        (args.frame_polynomial, args.background),
-    )?;
-    let output = args
-        .output
-        .clone()
-        .unwrap_or_else(|| args.dir.join(LOCATED));
+    let photographs = photographs(of, (&scene, record.as_ref()))?;
+    let output = args.output.clone();
+    let output = output.unwrap_or_else(|| of.dir.join(LOCATED));
     output::refuse_run(&output)?;
     let _lock = RunFolder::lock(&output, "phicam locate")?;
-    let pool = pool(args.threads)?;
+    let pool = pool(of.threads)?;
     let what = format!("locate in {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
         pool.install(|| plan.locate(&scene, &photographs.unexplained(), control))
@@ -48,8 +41,8 @@ pub(in crate::cli) fn execute(args: &LocateArgs, console: Console) -> Result<Out
         finding: located.describe(),
         agrees: located.is_found(),
     };
-    let asked = invocation(args, &scene);
-    let outcome = deliver("locate", &found, &output, &asked, args.json)?;
+    let again = invocation(args, &scene);
+    let outcome = deliver("locate", &found, &output, &again, of.json)?;
     console.say(format!("{}: written", output.display()));
     Ok(outcome)
 }
@@ -64,14 +57,15 @@ fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
         let distance = hidden.map(|(_, s)| (s.shape.at([0.5; 2]).position - seen).length());
         PART * distance.unwrap_or(1.0)
     };
+    let of = &args.photographs;
     LocatedPlan {
         what: args.what,
         range: args.range.unwrap_or([-far, far]),
         steps: usize::from(args.steps),
-        elements: elements(args.elements, scene, console),
-        occlusion: args.occlusion.occlusion(),
-        integration: args.integration,
-        background: args.background,
+        elements: elements(of.elements, scene, console),
+        occlusion: of.occlusion.occlusion(),
+        integration: of.integration,
+        background: of.background,
         orders: u64::from(args.orders),
         seed: args.seed,
     }
@@ -79,17 +73,12 @@ fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
 
 /// How to ask for it again.
 fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
-    Spelled::default()
+    let options = Spelled::default()
         .with("--what", args.what)
         .with("--steps", args.steps)
         .with("--orders", args.orders)
         .with("--seed", args.seed)
-        .with("--integration", args.integration)
-        .pair("--range", args.range, ",")
-        .pair("--elements", args.elements, "x")
-        .maybe("--frame-polynomial", args.frame_polynomial)
-        .flag("--background", args.background)
-        .file("--left-out", args.left_out.as_deref())
-        .flag("--no-occlusion", args.occlusion.no_occlusion)
-        .of_folder("locate", &args.dir, scene)
+        .pair("--range", args.range, ",");
+    let of = &args.photographs;
+    asked(of, options).of_folder("locate", &of.dir, scene)
 }

@@ -10,6 +10,7 @@ use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::output;
+use crate::cli::progress::clocked;
 use crate::cli::run_folder::{MODEL, REPORT, RunFolder, SUMMARY, Z, is_of_model};
 use crate::folder::{Record, write_scene};
 use crate::jobs::need;
@@ -42,7 +43,8 @@ pub(in crate::cli) fn execute(args: &ModelArgs, console: Console) -> Result<Outc
                 occlusion,
                 ..Extent::FULL
             };
-            let integral = converged(&scene, kernel, extent)?;
+            let what = format!("model of {}", scene.name);
+            let integral = clocked(console, &what, || converged(&scene, kernel, extent))?;
             let how = format!("by quadrature, last refinement {:.1e}", integral.change);
             (Some(integral.phi), Some(integral.change), how)
         }

@@ -141,7 +141,11 @@ fn compare_and_recover(
         integration,
         occlusion,
     };
-    let found = lab::validate(&results.scene, measured, against, test)?;
+    let scene = &results.scene;
+    let what = format!("model of {}", scene.name);
+    let found = progress::clocked(console, &what, || {
+        lab::validate(scene, measured, against, test)
+    })?;
     model::write(&args.output, &matrices, Some(&found.model), Some(&found.z))?;
     results.model = Some(found.model);
     results.z = Some(found.z);

@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use super::beside::{PhotographSize, certainty};
-use super::mask::read_mask;
+use super::mask::{read_mask, refuse_clipped};
+use super::spelled::Spelled;
+use crate::cli::args::PhotographsArgs;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::load_run::{read_left_out, read_photographs, read_stderr};
+use crate::cli::load_run::{read_left_out, read_photographs, read_run_or_scene, read_stderr};
 use crate::cli::run_folder::{PHI, STDERR};
 use crate::folder::Record;
 use crate::lab::{Certainty, Photographs, fewer, polynomials};
@@ -35,9 +37,54 @@ pub(super) fn elements(
     Some([nu, nv])
 }
 
+/// The scene of these photographs, its record where it is theirs.
+pub(super) fn scene_of(
+    args: &PhotographsArgs,
+    console: Console,
+) -> Result<(Scene, Option<Record>), Failure> {
+    let (scene, record) = read_run_or_scene(&args.dir, args.phi.as_deref(), console)?;
+    Ok((scene, record.filter(|_| args.phi.is_none())))
+}
+
+/// The photographs of `scene`, of the run of this record or of files of their own.
+pub(super) fn photographs(
+    args: &PhotographsArgs,
+    (scene, record): (&Scene, Option<&Record>),
+) -> Result<Photographs, Failure> {
+    let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
+    match (&args.phi, record) {
+        (None, Some(record)) => {
+            let beside = (polynomial, args.background);
+            of_run(&args.dir, (scene, record), left_out, beside)
+        }
+        (phi, _) => {
+            let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
+            if args.phi.is_some() && left_out.is_none() {
+                refuse_clipped(&phi, scene, "")?;
+            }
+            let beside = [args.stderr.as_deref(), left_out];
+            of_files(&phi, beside, scene, (polynomial, args.replicates))
+        }
+    }
+}
+
+/// How to ask for them again.
+pub(super) fn asked(args: &PhotographsArgs, options: Spelled) -> Spelled {
+    options
+        .with("--integration", args.integration)
+        .file("--phi", args.phi.as_deref())
+        .file("--stderr", args.stderr.as_deref())
+        .maybe("--replicates", args.replicates)
+        .file("--left-out", args.left_out.as_deref())
+        .maybe("--frame-polynomial", args.frame_polynomial)
+        .flag("--background", args.background)
+        .pair("--elements", args.elements, "x")
+        .flag("--no-occlusion", args.occlusion.no_occlusion)
+}
+
 /// The photographs of the folder `dir`; other light in each frame is a polynomial of degree
 /// `polynomial`, and there may be a `background` that all frames share.
-pub(super) fn of_run(
+fn of_run(
     dir: &Path,
     (scene, record): (&Scene, &Record),
     left_out: Option<&Path>,
@@ -60,7 +107,7 @@ pub(super) fn of_run(
 
 /// Those of files of their own; without `stderr` the noise is unknown, else known as from so many
 /// `replicates`, where that is said.
-pub(super) fn of_files(
+fn of_files(
     phi: &Path,
     [stderr, left_out]: [Option<&Path>; 2],
     scene: &Scene,

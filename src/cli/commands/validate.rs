@@ -9,6 +9,7 @@ use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_left_out, read_photographs, read_run_or_scene, read_stderr};
 use crate::cli::output;
+use crate::cli::progress::clocked;
 use crate::cli::run_folder::{PHI, STDERR, VALIDATION};
 use crate::cli::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
@@ -47,7 +48,10 @@ pub(in crate::cli) fn execute(args: &ValidateArgs, console: Console) -> Result<O
         integration: args.test.integration,
         occlusion: args.occlusion.occlusion(),
     };
-    let found = validate(&scene, measured, against, given.test)?;
+    let what = format!("model of {}", scene.name);
+    let found = clocked(console, &what, || {
+        validate(&scene, measured, against, given.test)
+    })?;
     output::result(args.json, &found.agreement, || {
         report::finding_text(&found.agreement.describe())
     })?;

@@ -16,7 +16,8 @@
 //! twice as many elements along each side would move is an error too where the photographs ask for
 //! it, and so is what the next rule of integration would ([`rule`]). All parameters together are
 //! held against what was known of them ([`beforehand`]), and what is left over against light that
-//! the model leaves out ([`light_left_out`]).
+//! the model leaves out ([`light_left_out`]). Where the likelihood has another peak as high, that
+//! place is told ([`elsewhere`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -58,6 +59,7 @@ mod descent;
 mod describe;
 mod edge;
 mod elements;
+mod elsewhere;
 mod field;
 mod finish;
 mod free;
@@ -79,6 +81,7 @@ pub use calibration::{Calibrated, Calibration, Starts};
 pub use descent::Stage;
 pub use edge::AtEdge;
 pub use elements::FinerElements;
+pub use elsewhere::Elsewhere;
 pub use free::Free;
 pub use identified::{Direction, Identified};
 pub use profile::Profile;
@@ -132,7 +135,7 @@ pub struct CalibrationPlan {
 impl CalibrationPlan {
     /// Work, in steps of progress.
     pub fn work(&self) -> u64 {
-        self.starts as u64 + 1
+        self.starts as u64 + 2
     }
 
     /// The geometry of `scene` by these photographs; standard errors from few replicates are pooled
@@ -236,13 +239,20 @@ impl CalibrationPlan {
             (control.progress)(1);
         }
         ends.sort_by(|a, b| a.total.total_cmp(&b.total));
+        ends.extend(self.other_places(&problem, &ends[0], &sizes, control)?);
+        (control.progress)(1);
+        ends.sort_by(|a, b| a.total.total_cmp(&b.total));
         while let Some(finer) = problem.next_rule(&ends[0])? {
             problem.geometry.fineness = finer;
             for end in &mut ends {
                 let mut stages = std::mem::take(&mut end.stages);
-                *end = self.end(&problem, &end.state.values, end.noise(), control)?;
-                stages.append(&mut end.stages);
-                end.stages = stages;
+                let finer = self.end(&problem, &end.state.values, end.noise(), control)?;
+                stages.extend(finer.stages);
+                *end = End {
+                    stages,
+                    is_of_start: end.is_of_start,
+                    ..finer
+                };
             }
             ends.sort_by(|a, b| a.total.total_cmp(&b.total));
         }

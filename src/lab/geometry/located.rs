@@ -11,7 +11,8 @@
 //! (jackknife; Efron and Stein, Annals of Statistics 9 (1981)). The first takes what is not
 //! explained for independent noise. Where the model lacks something, neighbouring pixels err alike
 //! and it is far too small; the frames still err by themselves. What both miss is light that all
-//! frames share: it can be taken out ([`Common`]), and else is looked for ([`light`]).
+//! frames share: it can be taken out ([`Common`]), and else is looked for ([`light`]); and that the
+//! surface has another size than the scene says, which is tried ([`resized`]).
 
 mod describe;
 mod fitting;
@@ -23,6 +24,7 @@ mod mistaken;
 mod order;
 mod picture;
 mod place;
+mod resized;
 mod search;
 
 #[cfg(test)]
@@ -34,6 +36,8 @@ pub use found::{Bright, Grid, Likelihood, Located};
 pub(super) use frames::covariance_root;
 pub use mistaken::Mistaken;
 pub use order::Order;
+pub use resized::Resized;
+pub(super) use search::NOT_TOLD;
 
 use super::common::Common;
 use crate::lab::comparison::misplaced::{self, Misplaced};
@@ -202,6 +206,7 @@ impl LocatedPlan {
         let fit = self.fit(&there, seen, &lengths)?;
         let errors = [peak.map(|peak| peak.stderr), by_frames];
         let elsewhere = not_told(log_likelihood, &others, errors);
+        let resized = self.resized((scene, altered), (best, errors), seen, control)?;
         let mut curve: Vec<&Place> = all().collect();
         curve.sort_by(|a, b| a.size.total_cmp(&b.size));
         let likelihood = |p: &&Place| Likelihood {
@@ -229,6 +234,7 @@ impl LocatedPlan {
             picture: self.picture(&there, seen, &lengths)?,
             order,
             mistaken,
+            resized,
             entries: photographs.counted(),
             frames: photographs.phi.ncols(),
             is_noise_known: photographs.stderr.is_some(),

@@ -14,6 +14,7 @@ use crate::cli::commands::recovered::recovering;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_photographs, read_stderr};
+use crate::cli::progress::clocked;
 use crate::cli::run_folder::{PHI, STDERR};
 use crate::folder::Record;
 use crate::lab::{Attempt, Certainty, Noise, inverted, recover_with_picards};
@@ -67,13 +68,10 @@ impl RecoveryRequest<'_> {
             }
         };
         let occlusion = args.occlusion.occlusion();
-        let model = inverted(
-            scene,
-            args.kernel,
-            args.elements,
-            occlusion,
-            (args.integration, Effort::FINEST),
-        )?;
+        let by = (args.integration, Effort::FINEST);
+        let model = clocked(self.console, &format!("model of {}", scene.name), || {
+            inverted(scene, args.kernel, args.elements, occlusion, by)
+        })?;
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, self.certainty)
         });

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{AtEdge, Beforehand, Direction, FinerElements, Identified, Profile, Stage};
+use super::{AtEdge, Beforehand, Direction, Elsewhere, FinerElements, Identified, Profile, Stage};
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::lab::geometry::located::Grid;
 use crate::matrix::Matrix;
@@ -144,6 +144,8 @@ pub struct Calibration {
     pub held: Vec<AtEdge>,
     /// The starts.
     pub starts: Starts,
+    /// Other places that the photographs do not tell from this one.
+    pub elsewhere: Vec<Elsewhere>,
     /// The picture, the mean over all priors by their evidence, as of `joint-gp` by this geometry;
     /// errors of the geometry included.
     pub grids: Vec<Grid>,

@@ -4,6 +4,7 @@ mod beyond;
 mod directions;
 mod named;
 mod picture;
+mod searched;
 mod tables;
 
 use super::{Calibrated, Calibration};
@@ -40,10 +41,11 @@ fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 }
 
 impl Calibration {
-    /// Whether the search ended, the photographs do not refute what it found, and a surface can
-    /// have its picture.
+    /// Whether the search ended and nowhere else as well, the photographs do not refute what it
+    /// found, and a surface can have its picture.
     pub fn is_found(&self) -> bool {
-        self.is_settled && !self.is_refuted() && self.impossible().is_none()
+        let is_alone = self.is_settled && self.elsewhere.is_empty();
+        is_alone && !self.is_refuted() && self.impossible().is_none()
     }
 
     /// Whether the photographs do not fit what was found, and it is not for the integration.
@@ -97,7 +99,11 @@ impl Calibration {
             Some(_) => " No surface can have the picture that goes with it: do not use it.",
             None => "",
         };
-        let found = format!("rom what the scene says: {}.{ended}", self.first(of));
+        let found = format!(
+            "rom what the scene says: {}.{ended}{}",
+            self.first(of),
+            self.or_elsewhere()
+        );
         match self.p.filter(|_| self.is_refuted()) {
             // Without a stated noise a misfit of the model is not told from it.
             None if self.field.is_some() => format!(
@@ -232,24 +238,6 @@ impl Calibration {
     /// That errors which hang together do not average out.
     fn hang_together(&self) -> Option<String> {
         Some(hang_together(self.shared?, "the geometry"))
-    }
-
-    fn searched(&self) -> String {
-        let starts = match self.starts.tried {
-            1 => "One start was tried: whether others end elsewhere is not known (--starts)."
-                .to_owned(),
-            n if self.starts.agree == n => format!("All {n} starts end in one place."),
-            n => format!(
-                "{} of {n} starts end where the likeliest one does; the others found less likely \
-                 places. If that is few, there may be a likelier place still (--starts).",
-                self.starts.agree
-            ),
-        };
-        let steps: usize = self.stages.iter().map(|s| s.steps).sum();
-        format!(
-            "{starts} The likeliest took {steps} steps at {} noises, from large to the stated one.",
-            self.stages.len()
-        )
     }
 
     /// Parameters whose errors are those of other priors of the picture, by much.

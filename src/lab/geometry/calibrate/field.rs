@@ -52,6 +52,8 @@ pub(super) struct End {
     /// −ln of the likelihood, and with errors of single pixels.
     pub total: f64,
     pub without: f64,
+    /// Whether it is the end of one of the starts.
+    pub is_of_start: bool,
 }
 
 impl Field {
@@ -102,6 +104,7 @@ impl End {
             field: None,
             total,
             without: total,
+            is_of_start: true,
         }
     }
 
@@ -213,6 +216,7 @@ impl<'a> Problem<'a> {
             stages,
             field: Some(field),
             without,
+            is_of_start: true,
         })
     }
 

@@ -1,6 +1,7 @@
 //! From where the searches end to the estimate with its errors.
 
 use super::descent::State;
+use super::elsewhere;
 use super::field::End;
 use super::geometry::Light;
 use super::left_out::Group;
@@ -133,10 +134,10 @@ impl CalibrationPlan {
             });
         }
         let starts = Starts {
-            tried: ends.len(),
+            tried: self.starts.max(1),
             agree: ends
                 .iter()
-                .filter(|end| agree(&end.state, best, &found))
+                .filter(|end| end.is_of_start && agree(&end.state, best, &found))
                 .count(),
         };
         let scale = best.prior.scale;
@@ -192,6 +193,7 @@ impl CalibrationPlan {
             is_settled: best.is_settled,
             held,
             starts,
+            elsewhere: elsewhere::not_told(&ends, &found),
             grids: grids.collect(),
             stderr_given: picture.given.iter().map(|x| x.sqrt()).collect(),
             covariance: picture.covariance.map(|given| given + moved),

@@ -4,6 +4,7 @@ mod averaged;
 mod beforehand;
 mod common;
 mod edge;
+mod elsewhere;
 mod errors;
 mod estimates;
 mod light_left_out;

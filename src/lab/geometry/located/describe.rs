@@ -2,7 +2,7 @@
 
 mod ordered;
 
-use super::{Grid, Located};
+use super::{Grid, Located, Resized};
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
     Shades, Table, Tone,
@@ -12,17 +12,20 @@ use crate::lab::recovered::fit::Fit;
 use crate::lab::uncertainty::certainty::hang_together;
 use crate::num::digits::figure;
 
+/// Another size of the surface makes the place another from so many standard errors on.
+const MOVED: f64 = 2.0;
 /// A standard error that is less than this part of the others is rounding.
 const FLAT: f64 = 1e-9;
 
 impl Located {
-    /// Whether the largest likelihood lies within the range and no other peak is nearly as likely,
+    /// Whether the largest likelihood lies within the range, no other peak is nearly as likely and
+    /// no other size of the surface is much likelier and elsewhere,
     /// the stated noise does not refute what is there, and the order of the spots is neither by
     /// chance nor mistaken.
     pub fn is_found(&self) -> bool {
         let by_chance = self.order.and_then(|order| order.is_by_chance());
         let is_in_order = by_chance != Some(true) && self.mistaken.is_none();
-        let is_alone = self.size.is_some() && self.elsewhere.is_empty();
+        let is_alone = self.size.is_some() && self.elsewhere.is_empty() && self.moved().is_none();
         is_alone && self.refuted().is_none() && is_in_order
     }
 
@@ -67,10 +70,32 @@ impl Located {
         });
         format!(
             "{refuted}{}: {} {error} from where the scene has it; the middle of the hidden surface \
-             is then at ({x}, {y}, {z}).{}",
+             is then at ({x}, {y}, {z}).{}{}",
             self.what,
             figure(size, 3),
-            self.or_elsewhere()
+            self.or_elsewhere(),
+            self.moved()
+                .map_or(String::new(), |other| format!(" {}", self.as_large(other)))
+        )
+    }
+
+    /// Another size of the surface, where with it the place is another too.
+    fn moved(&self) -> Option<Resized> {
+        let (size, stderr) = (self.size?, self.stderr()?);
+        self.resized
+            .filter(|other| (other.size - size).abs() > MOVED * stderr)
+    }
+
+    /// What is said of another size of the surface.
+    fn as_large(&self, other: Resized) -> String {
+        format!(
+            "With the hidden surface {} times as large about its middle the photographs are e^{} times likelier, and it is \
+             at {} {}: the scene may have its size WRONG. Give it the size that it has, or one that holds all that is \
+             hidden.",
+            other.factor,
+            figure(other.log_likelier, 2),
+            figure(other.size, 3),
+            self.unit
         )
     }
 
@@ -228,6 +253,8 @@ impl Describe for Located {
         let which = self.shared.filter(|_| self.is_noise_known);
         notes.extend(which.map(|which| hang_together(which, "the place")));
         notes.extend(self.left_out_light().map(|light| light.beware("place")));
+        let resized = self.resized.filter(|_| self.moved().is_none());
+        notes.extend(resized.map(|other| format!("Beware: {}", self.as_large(other))));
         notes.extend(self.brightest());
         notes.push(self.ordered());
         let points = |of: fn(&super::Likelihood) -> f64| -> Vec<[f64; 2]> {
@@ -267,7 +294,7 @@ impl Describe for Located {
             title,
             tone: if !self.is_found() {
                 Tone::Bad
-            } else if self.left_out_light().next().is_some() {
+            } else if self.left_out_light().next().is_some() || self.resized.is_some() {
                 Tone::Plain
             } else {
                 Tone::Good

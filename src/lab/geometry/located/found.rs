@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::mistaken::Mistaken;
 use super::order::Order;
+use super::resized::Resized;
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::lab::recovered::fit::Fit;
 
@@ -99,6 +100,8 @@ pub struct Located {
     pub order: Option<Order>,
     /// An order that is easily mistaken for the right one and in which they are likelier.
     pub mistaken: Option<Mistaken>,
+    /// Another size of the hidden surface by which they are much likelier.
+    pub resized: Option<Resized>,
     /// Entries that count.
     pub entries: usize,
     /// Frames.

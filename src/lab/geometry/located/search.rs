@@ -20,7 +20,7 @@ const SEARCHES: usize = 12;
 /// Peaks that are looked at, at most.
 const MOST_PEAKS: usize = 4;
 /// ½ χ² of one degree of freedom that chance exceeds in 1 of 100.
-const NOT_TOLD: f64 = 0.5 * 6.634_896_601;
+pub(in crate::lab::geometry) const NOT_TOLD: f64 = 0.5 * 6.634_896_601;
 
 /// The fits at so many sizes evenly between two, each without each frame too if asked for.
 type Places<'a> = dyn Fn([f64; 2], usize, bool) -> Result<Vec<Place>, LabError> + 'a;
@@ -120,14 +120,19 @@ pub(super) fn not_told(
     others: &[Place],
     errors: [Option<f64>; 2],
 ) -> impl Iterator<Item = &Place> {
+    let most = NOT_TOLD * scatter(errors);
+    others
+        .iter()
+        .filter(move |at| likeliest - at.log_likelihood() <= most)
+}
+
+/// max(1, (σ_J/σ_L)²) of σ_L and σ_J; 1 where one is not known.
+pub(super) fn scatter(errors: [Option<f64>; 2]) -> f64 {
     let ratio = match errors {
         [Some(curvature), Some(frames)] => (frames / curvature).max(1.0),
         _ => 1.0,
     };
-    let most = NOT_TOLD * ratio * ratio;
-    others
-        .iter()
-        .filter(move |at| likeliest - at.log_likelihood() <= most)
+    ratio * ratio
 }
 
 /// Those of evenly spaced sizes that are likelier than their neighbours, likeliest first.

@@ -1,6 +1,7 @@
 //! Where the scene ends.
 
 use super::*;
+use crate::model::Swept;
 
 /// The bench with five spots, the third at (5, y); its wall begins at y = `below` in place of 0.
 fn with_a_spot_at(y: f64, below: f64) -> Scene {
@@ -62,19 +63,19 @@ fn starts_beside_an_edge_are_scenes() {
     assert!(least >= 0.0, "{profile:?}");
 }
 
-/// Past a plate, where light has differences for slopes, that of a spot on the wall's edge is as
-/// on a wall that goes on, within what a step of 1e-3 of the distance leaves of a slope that
-/// changes over inches.
+/// Past a ball, where light has differences for slopes, that of a spot on the wall's edge is as on
+/// a wall that goes on, within what a step of 1e-3 of the distance leaves of a slope that changes
+/// over inches.
 #[test]
 fn a_difference_at_an_edge_takes_the_other_side() {
-    let with_plate = |below: f64| {
+    let with_ball = |below: f64| {
         let scene = with_a_spot_at(0.0, below);
-        let plate = "\n[[surface]]\nname = \"plate\"\nrole = \"occluder\"\n\
-            rectangle = { corner = [4.5, 6.0, 2.0], u = [1.0, 0.0, 0.0], v = [0.0, 1.0, 0.0] }\n\
+        let ball = "\n[[surface]]\nname = \"ball\"\nrole = \"occluder\"\n\
+            sphere = { centre = [5.0, 6.5, 2.0], radius = 0.5, face = \"outside\" }\n\
             material = { lambertian = 0.0 }\n";
         let places = scene.laser.spots.iter().map(|s| s.target.position);
         let spots: Vec<[f64; 2]> = places.map(|p| [p.x, p.y]).collect();
-        let scene = Scene::from_toml("plate", &(scene.text.to_string() + plate)).unwrap();
+        let scene = Scene::from_toml("ball", &(scene.text.to_string() + ball)).unwrap();
         scene.with_spots_at(&spots).unwrap()
     };
     let rate = |scene: &Scene| {
@@ -87,10 +88,13 @@ fn a_difference_at_an_edge_takes_the_other_side() {
             occlusion: Occlusion::Considered,
             gains: 0,
         };
+        let velocity = scene.velocity(&parameters, &[0.0], 0);
+        let swept = Swept::new(scene, geometry.elements, &[velocity], Effort::FINEST);
+        assert!(swept.unwrap().unwrap().rates[0].is_none());
         let light = geometry.light(&[0.0], 0.0, true).unwrap();
         light.frame_rate(2, 0).unwrap()
     };
-    let (own, want) = (rate(&with_plate(0.0)), rate(&with_plate(-1.0)));
+    let (own, want) = (rate(&with_ball(0.0)), rate(&with_ball(-1.0)));
     let off = (&own - &want).norm() / want.norm();
     assert!(off < 0.01, "{off}");
 }

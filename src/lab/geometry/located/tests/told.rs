@@ -181,3 +181,40 @@ fn places_that_make_the_same_photographs_are_told() {
         );
     }
 }
+
+/// A surface that the scene has 0.8 or 1.25 times as large as it is: that it is likelier with the
+/// right size is told, and of that size nothing.
+#[test]
+fn another_size_of_the_surface_is_told() {
+    let right = bench();
+    let middle = right.hidden().next().unwrap().1.shape.at([0.5; 2]).position;
+    let by = |factor: f64| {
+        let motion = glam::DAffine3::from_translation(middle)
+            * glam::DAffine3::from_scale(glam::DVec3::splat(factor))
+            * glam::DAffine3::from_translation(-middle);
+        right.with_moved_hidden(&motion).unwrap()
+    };
+    let plan = LocatedPlan {
+        elements: Some([5; 2]),
+        ..by_centres([-1.5, 1.5], 0)
+    };
+    let rho: Vec<f64> = (0..25).map(|k| 0.5 + 0.05 * f64::from(k % 5)).collect();
+    let clean = plan.model(&right).unwrap().phi_of(&rho);
+    let stderr = clean.map(|x| 2e-3 * x);
+    let phi = &clean + noise(clean.nrows(), clean.ncols(), 5).component_mul(&stderr);
+    let of = |factor: f64| located(&by(factor), &phi, &stderr, plan);
+    let (own, small, large) = (of(1.0), of(0.8), of(1.25));
+    assert!(own.is_found() && own.resized.is_none(), "{:?}", own.resized);
+    for (found, factor) in [(small, 1.25), (large, 0.8)] {
+        let other = found.resized.unwrap();
+        assert_eq!(other.factor, factor);
+        let off = (other.size - own.size.unwrap()) / own.stderr().unwrap();
+        assert!(
+            off.abs() < 1.0 && other.log_likelier > 5.0,
+            "{off} {other:?}"
+        );
+        let told = found.describe();
+        let all = told.sentence + &told.notes.concat();
+        assert!(all.contains("may have its size WRONG"), "{all}");
+    }
+}

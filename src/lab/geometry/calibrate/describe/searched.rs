@@ -1,0 +1,62 @@
+//! Where the search ended, and where else it might have.
+
+use super::with_unit;
+use crate::lab::finding::listed;
+use crate::lab::geometry::calibrate::elsewhere::{APART, MOST, SIDE};
+use crate::lab::geometry::calibrate::{Calibration, Elsewhere};
+use crate::num::digits::figure;
+
+impl Calibration {
+    /// Places that are not told from this one, by the unknowns that differ.
+    pub(super) fn or_elsewhere(&self) -> String {
+        let place = |at: &Elsewhere| {
+            let each = self.geometry().zip(&at.values);
+            let other = each.filter(|(f, x)| (*x - f.value).abs() > APART * f.stderr);
+            let named: Vec<String> = other
+                .map(|(f, x)| format!("{} {}", f.name, with_unit(*x, 3, &f.unit)))
+                .collect();
+            format!(
+                "{} (by e^{} less likely)",
+                listed(&named),
+                figure(at.less_likely, 2)
+            )
+        };
+        let each: Vec<String> = self.elsewhere.iter().map(place).collect();
+        if each.is_empty() {
+            return String::new();
+        }
+        format!(
+            " The photographs do NOT TELL that from {}: give what is known otherwise (--free NAME=SIGMA), or photograph \
+             by spots or a view that tell them apart.",
+            each.join(" or from ")
+        )
+    }
+
+    pub(super) fn searched(&self) -> String {
+        let starts = match self.starts.tried {
+            1 => "One start was tried: whether others end elsewhere is not known (--starts)."
+                .to_owned(),
+            n if self.starts.agree == n => format!("All {n} starts end in one place."),
+            n => format!(
+                "{} of {n} starts end where the likeliest place is; the others ended \
+                 elsewhere. If that is few, there may be a likelier place still (--starts).",
+                self.starts.agree
+            ),
+        };
+        let looked = if self.geometry().count() > MOST {
+            format!(
+                "Of more than {MOST} parameters no other places were looked for but by the starts."
+            )
+        } else {
+            format!(
+                "Other places were looked for along one parameter at a time, as far as {SIDE} times its σ, 1°, 1 % or 1 % \
+                 of the distance from the scene."
+            )
+        };
+        let steps: usize = self.stages.iter().map(|s| s.steps).sum();
+        format!(
+            "{starts} {looked} The likeliest took {steps} steps at {} noises, from large to the stated one.",
+            self.stages.len()
+        )
+    }
+}

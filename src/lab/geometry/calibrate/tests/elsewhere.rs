@@ -1,0 +1,71 @@
+//! Two places that make the same photographs.
+
+use super::*;
+use crate::scene::file::{Layout, SpotsTable};
+
+/// Spots, view and camera on the line x = 5, about which the hidden surface is symmetric.
+fn on_the_axis() -> Scene {
+    let mut file = SceneFile::builtin("bench").unwrap();
+    let laser = file.laser.as_mut().unwrap();
+    laser.position[0] = 5.0;
+    laser.spots = SpotsTable {
+        layout: Layout::List,
+        points: Some((0..16).map(|k| [5.0, 1.2 + 0.48 * f64::from(k)]).collect()),
+        ..SpotsTable::default()
+    };
+    file.camera.position[0] = 5.0;
+    file.camera.view.x = [3.5, 6.5];
+    file.camera.pixels = [1, 12];
+    Scene::new(&file, None).unwrap()
+}
+
+/// Turned to the left the surface makes the photographs that it makes turned to the right, with a
+/// mirrored picture: both places are told, whichever side the start leads to, and one alone where
+/// the surface is known to be turned to that side.
+#[test]
+fn a_place_that_makes_the_same_photographs_is_told() {
+    let scene = on_the_axis();
+    let yaw = Parameter::named(&scene, "hidden.yaw").unwrap();
+    for turned in [12.0, -12.0] {
+        let there = scene.displaced(&yaw, &[turned]).unwrap();
+        let elements = Some([1, 3]);
+        let of = |occlusion| MatrixModel::with(&there, Kernel::Physical, elements, occlusion);
+        let clean = of(Occlusion::Considered).unwrap().phi_of(&[0.8, 0.3, 0.6]);
+        let stderr = clean.map(|_| 2e-3 * clean.mean());
+        let mut random = normal(6);
+        let phi = clean.zip_map(&stderr, |x, s| x + s * random()[0]);
+        let plan = CalibrationPlan {
+            elements,
+            ..plan(&["hidden.yaw"], 3)
+        };
+        let both = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+        let both = both.unwrap();
+        let own = &both.found[0];
+        let [other] = &both.elsewhere[..] else {
+            panic!("{:?} {own:?}", both.elsewhere);
+        };
+        let off = [own.value, other.values[0]].map(|at| (at.abs() - 12.0) / own.stderr);
+        let both_ways = own.value * other.values[0] < 0.0;
+        assert!(
+            both_ways && off.iter().all(|off| off.abs() < 3.0),
+            "{off:?}"
+        );
+        assert!(!both.is_found() && both.describe().sentence.contains("do NOT TELL"));
+        let aside = scene.displaced(&yaw, &[0.8 * turned]).unwrap();
+        let known = CalibrationPlan {
+            free: vec![Free {
+                name: "hidden.yaw".to_owned(),
+                sigma: Some(3.0),
+            }],
+            ..plan
+        };
+        let one = known.calibrate(&aside, &unexplained(&phi, &stderr), Control::none());
+        let one = one.unwrap();
+        let off = (one.found[0].value - 0.2 * turned) / one.found[0].stderr;
+        assert!(
+            one.is_found() && off.abs() < 3.0,
+            "{off} {:?}",
+            one.elsewhere
+        );
+    }
+}
