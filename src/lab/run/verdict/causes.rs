@@ -129,7 +129,7 @@ impl Score {
             if d.is_within_reach(d.detectable) {
                 format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit)
             } else {
-                format!("{} in no size that a scene can have", d.name)
+                format!("{} never (a scene cannot have so much of it)", d.name)
             }
         };
         let wanted = [

@@ -33,6 +33,19 @@ impl Sweep {
                 left(best)
             );
         }
+        if left(best) == left(worst) {
+            return format!(
+                "At a {} noise of {} these values of {} make hardly any difference: the photographs leave {} % of the prior \
+                 variance, by {} % of that less with {} than with {}.",
+                self.law,
+                figure(self.noise, 1),
+                self.key,
+                left(best),
+                figure(100.0 * (1.0 - best.risk / worst.risk), 1),
+                best.value,
+                worst.value
+            );
+        }
         format!(
             "At a {} noise of {} the photographs leave least of the prior variance, {} %, with {} = \
              {}, and most, {} %, with {}.",
@@ -148,7 +161,8 @@ impl Describe for Sweep {
 mod tests {
     use super::*;
 
-    /// Shares that differ by rounding are no difference; by a thousandth they are.
+    /// Shares that differ by rounding are no difference, by less than the digits that are told hardly
+    /// any.
     #[test]
     fn roundings_are_no_difference() {
         let step = |value: &str, risk| SweepStep {
@@ -177,7 +191,13 @@ mod tests {
             let said = said(same);
             assert!(said.contains("makes no difference"), "{said}");
         }
-        let said = said([0.441, 0.44]);
-        assert!(said.contains("laser.power = 5 mW, and most"), "{said}");
+        let hardly = said([0.441, 0.44]);
+        assert!(
+            hardly.contains("hardly any difference")
+                && hardly.contains("by 0.2 % of that less with 5 mW"),
+            "{hardly}"
+        );
+        let much = said([0.46, 0.44]);
+        assert!(much.contains("laser.power = 5 mW, and most"), "{much}");
     }
 }

@@ -55,7 +55,7 @@ fn what_no_scene_can_have_is_not_detected() {
     assert_eq!(told(None), told(Some(90.0)));
     assert_eq!(
         told(Some(1e-4)),
-        "hinge angle in no size that a scene can have"
+        "hinge angle never (a scene cannot have so much of it)"
     );
 }
 
