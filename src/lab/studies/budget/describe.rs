@@ -29,8 +29,13 @@ impl ErrorBudget {
         let in_sum = self.terms.iter().filter(|t| t.in_sum);
         let largest = in_sum.max_by(|a, b| a.size.value.total_cmp(&b.size.value));
         let largest = largest.map_or(String::new(), |t| {
+            let sign = if t.size.value > c.sum.value {
+                " (parts of other sign take from it)"
+            } else {
+                ""
+            };
             format!(
-                "; the largest of them is {}, {}",
+                "; the largest of them is {}, {}{sign}",
                 t.name,
                 figure(t.size.value, 2)
             )
@@ -174,6 +179,14 @@ mod tests {
         ] {
             assert!(good.sentence.contains(words), "{}", good.sentence);
         }
+        assert!(!good.sentence.contains("other sign"));
+        let mut less = budget(true);
+        less.closure.sum = estimate(0.0098, 1e-4);
+        assert!(
+            less.describe()
+                .sentence
+                .contains("0.012 (parts of other sign")
+        );
         let bad = budget(false).describe();
         assert_eq!(bad.tone, Tone::Bad);
         assert!(bad.sentence.contains("DO NOT ADD UP") && bad.sentence.contains("z = 7.0"));
