@@ -66,7 +66,8 @@ pub(in crate::cli) struct RecoverArgs {
     /// Kernel of the model that is inverted
     #[arg(long, value_parser = choice::named::<Kernel>(), default_value = "physical")]
     pub kernel: Kernel,
-    /// Elements along u and v, in place of the scene's: N or NxM
+    /// Elements along u and v, in place of the scene's: N or NxM. Beside --camera-side they are as
+    /// C has them, u fastest; v is drawn upwards, so that the first row of elements is the lowest
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
     #[command(flatten)]
