@@ -189,8 +189,9 @@ pub use geometry::calibrate::{
 };
 pub use geometry::light_left_out::LightLeftOut;
 pub use geometry::located::{
-    Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order, Resized,
+    Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Mistaken, Order,
 };
+pub use geometry::resized::Resized;
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };

@@ -17,7 +17,8 @@
 //! it, and so is what the next rule of integration would ([`rule`]). All parameters together are
 //! held against what was known of them ([`beforehand`]), and what is left over against light that
 //! the model leaves out ([`light_left_out`]). Where the likelihood has another peak as high, that
-//! place is told ([`elsewhere`]).
+//! place is told ([`elsewhere`]), and another size of the surface if it is much likelier
+//! ([`super::resized`]).
 //!
 //! On the bench, photographs of the converged model with normal noise relative to each entry,
 //! hinge, distance and yaw free (or the spots), one start at the scene that is off by so much, 60
@@ -71,6 +72,7 @@ mod other_pictures;
 mod picture;
 mod posterior;
 mod profile;
+mod resized;
 mod rule;
 mod step;
 #[cfg(test)]
@@ -256,7 +258,10 @@ impl CalibrationPlan {
             }
             ends.sort_by(|a, b| a.total.total_cmp(&b.total));
         }
-        self.finish(&problem, (&model, told, untold), ends, control)
+        let resized = self.resized(&problem, &ends[0], control)?;
+        let mut found = self.finish(&problem, (&model, told, untold), ends, control)?;
+        found.resized = resized.filter(|other| other.is_told(elsewhere::scatter(&found.found)));
+        Ok(found)
     }
 
     /// From `start` and a noise `first` times the stated one to an end.

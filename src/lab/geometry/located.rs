@@ -12,7 +12,7 @@
 //! explained for independent noise. Where the model lacks something, neighbouring pixels err alike
 //! and it is far too small; the frames still err by themselves. What both miss is light that all
 //! frames share: it can be taken out ([`Common`]), and else is looked for ([`light`]); and that the
-//! surface has another size than the scene says, which is tried ([`resized`]).
+//! surface has another size than the scene says, which is tried ([`super::resized`]).
 
 mod describe;
 mod fitting;
@@ -36,7 +36,6 @@ pub use found::{Bright, Grid, Likelihood, Located};
 pub(super) use frames::covariance_root;
 pub use mistaken::Mistaken;
 pub use order::Order;
-pub use resized::Resized;
 pub(super) use search::NOT_TOLD;
 
 use super::common::Common;

@@ -5,3 +5,4 @@ pub(super) mod common;
 pub(super) mod light_left_out;
 pub(super) mod located;
 pub(super) mod normal;
+pub(super) mod resized;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{AtEdge, Beforehand, Direction, Elsewhere, FinerElements, Identified, Profile, Stage};
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::lab::geometry::located::Grid;
+use crate::lab::geometry::resized::Resized;
 use crate::matrix::Matrix;
 use crate::recovery::ErrorField;
 
@@ -146,6 +147,8 @@ pub struct Calibration {
     pub starts: Starts,
     /// Other places that the photographs do not tell from this one.
     pub elsewhere: Vec<Elsewhere>,
+    /// Another size of the hidden surface by which they are much likelier.
+    pub resized: Option<Resized>,
     /// The picture, the mean over all priors by their evidence, as of `joint-gp` by this geometry;
     /// errors of the geometry included.
     pub grids: Vec<Grid>,

@@ -41,10 +41,11 @@ fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 }
 
 impl Calibration {
-    /// Whether the search ended and nowhere else as well, the photographs do not refute what it
-    /// found, and a surface can have its picture.
+    /// Whether the search ended and nowhere else as well, no other size of the surface is much
+    /// likelier and elsewhere, the photographs do not refute what it found, and a surface can have
+    /// its picture.
     pub fn is_found(&self) -> bool {
-        let is_alone = self.is_settled && self.elsewhere.is_empty();
+        let is_alone = self.is_settled && self.elsewhere.is_empty() && self.moved().is_none();
         is_alone && !self.is_refuted() && self.impossible().is_none()
     }
 
@@ -100,9 +101,10 @@ impl Calibration {
             None => "",
         };
         let found = format!(
-            "rom what the scene says: {}.{ended}{}",
+            "rom what the scene says: {}.{ended}{}{}",
             self.first(of),
-            self.or_elsewhere()
+            self.or_elsewhere(),
+            self.or_as_large()
         );
         match self.p.filter(|_| self.is_refuted()) {
             // Without a stated noise a misfit of the model is not told from it.
@@ -261,6 +263,8 @@ impl Calibration {
             notes.push(format!("Beware: {FOLLOWS_ENTRIES}."));
         }
         notes.extend(self.impossible());
+        let resized = self.resized.as_ref().filter(|_| self.moved().is_none());
+        notes.extend(resized.map(|other| format!("Beware: {}", self.as_large(other))));
         notes.push(self.elements());
         notes.extend([self.searched(), self.picture()]);
         let warnings = self.picture_warnings.iter();
@@ -328,6 +332,7 @@ impl Describe for Calibration {
                     || self.asks_for_elements()
                     || self.shared.is_some()
                     || !self.held.is_empty()
+                    || self.resized.is_some()
                     || self.is_beyond() =>
                 {
                     Tone::Plain

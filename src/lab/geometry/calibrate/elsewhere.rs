@@ -147,17 +147,19 @@ fn gap(a: &[f64], b: &[f64], errors: &[f64]) -> f64 {
     each.fold(0.0, f64::max)
 }
 
-/// Those of `ends`, the likeliest first, that are not told from that.
-pub(super) fn not_told(ends: &[End], found: &[Calibrated]) -> Vec<Elsewhere> {
+/// max(1, (σ′/σ)²), the largest of all parameters.
+pub(super) fn scatter(found: &[Calibrated]) -> f64 {
     let ratio = |f: &Calibrated| {
-        let by_left = f
-            .by_frames
-            .into_iter()
-            .chain(f.by_blocks)
-            .fold(0.0, f64::max);
-        by_left / f.by_curvature
+        let by_left = f.by_frames.into_iter().chain(f.by_blocks);
+        by_left.fold(0.0, f64::max) / f.by_curvature
     };
     let ratio = found.iter().map(ratio).fold(1.0, f64::max);
+    ratio * ratio
+}
+
+/// Those of `ends`, the likeliest first, that are not told from that.
+pub(super) fn not_told(ends: &[End], found: &[Calibrated]) -> Vec<Elsewhere> {
+    let most = NOT_TOLD * scatter(found);
     let errors: Vec<f64> = found.iter().map(|f| f.stderr).collect();
     let mut known = vec![&ends[0].state.values];
     let mut told = Vec::new();
@@ -167,7 +169,7 @@ pub(super) fn not_told(ends: &[End], found: &[Calibrated]) -> Vec<Elsewhere> {
         let is_apart = known
             .iter()
             .all(|other| gap(values, other, &errors) > APART);
-        if end.state.is_settled && is_apart && less_likely <= NOT_TOLD * ratio * ratio {
+        if end.state.is_settled && is_apart && less_likely <= most {
             known.push(values);
             told.push(Elsewhere {
                 values: values.clone(),

@@ -194,6 +194,7 @@ impl CalibrationPlan {
             held,
             starts,
             elsewhere: elsewhere::not_told(&ends, &found),
+            resized: None,
             grids: grids.collect(),
             stderr_given: picture.given.iter().map(|x| x.sqrt()).collect(),
             covariance: picture.covariance.map(|given| given + moved),

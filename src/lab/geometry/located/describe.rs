@@ -2,18 +2,17 @@
 
 mod ordered;
 
-use super::{Grid, Located, Resized};
+use super::{Grid, Located};
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
     Shades, Table, Tone,
 };
 use crate::lab::geometry::light_left_out::LightLeftOut;
+use crate::lab::geometry::resized::Resized;
 use crate::lab::recovered::fit::Fit;
 use crate::lab::uncertainty::certainty::hang_together;
 use crate::num::digits::figure;
 
-/// Another size of the surface makes the place another from so many standard errors on.
-const MOVED: f64 = 2.0;
 /// A standard error that is less than this part of the others is rounding.
 const FLAT: f64 = 1e-9;
 
@@ -80,23 +79,16 @@ impl Located {
     }
 
     /// Another size of the surface, where with it the place is another too.
-    fn moved(&self) -> Option<Resized> {
-        let (size, stderr) = (self.size?, self.stderr()?);
-        self.resized
-            .filter(|other| (other.size - size).abs() > MOVED * stderr)
+    fn moved(&self) -> Option<&Resized> {
+        let own = (self.size?, self.stderr()?);
+        let other = self.resized.as_ref();
+        other.filter(|other| other.is_elsewhere(std::iter::once(own)))
     }
 
     /// What is said of another size of the surface.
-    fn as_large(&self, other: Resized) -> String {
-        format!(
-            "With the hidden surface {} times as large about its middle the photographs are e^{} times likelier, and it is \
-             at {} {}: the scene may have its size WRONG. Give it the size that it has, or one that holds all that is \
-             hidden.",
-            other.factor,
-            figure(other.log_likelier, 2),
-            figure(other.size, 3),
-            self.unit
-        )
+    fn as_large(&self, other: &Resized) -> String {
+        let size = figure(other.values[0], 3);
+        other.told(&format!("{} {size} {}", self.what, self.unit))
     }
 
     /// Places that are not told from this one.
@@ -253,7 +245,7 @@ impl Describe for Located {
         let which = self.shared.filter(|_| self.is_noise_known);
         notes.extend(which.map(|which| hang_together(which, "the place")));
         notes.extend(self.left_out_light().map(|light| light.beware("place")));
-        let resized = self.resized.filter(|_| self.moved().is_none());
+        let resized = self.resized.as_ref().filter(|_| self.moved().is_none());
         notes.extend(resized.map(|other| format!("Beware: {}", self.as_large(other))));
         notes.extend(self.brightest());
         notes.push(self.ordered());

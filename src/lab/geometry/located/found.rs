@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::mistaken::Mistaken;
 use super::order::Order;
-use super::resized::Resized;
 use crate::lab::geometry::light_left_out::LightLeftOut;
+use crate::lab::geometry::resized::Resized;
 use crate::lab::recovered::fit::Fit;
 
 /// How likely one size is.

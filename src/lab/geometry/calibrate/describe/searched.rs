@@ -3,7 +3,8 @@
 use super::with_unit;
 use crate::lab::finding::listed;
 use crate::lab::geometry::calibrate::elsewhere::{APART, MOST, SIDE};
-use crate::lab::geometry::calibrate::{Calibration, Elsewhere};
+use crate::lab::geometry::calibrate::{Calibrated, Calibration, Elsewhere};
+use crate::lab::geometry::resized::Resized;
 use crate::num::digits::figure;
 
 impl Calibration {
@@ -30,6 +31,29 @@ impl Calibration {
              by spots or a view that tell them apart.",
             each.join(" or from ")
         )
+    }
+
+    /// Another size of the surface, where with it a parameter is another too.
+    pub(super) fn moved(&self) -> Option<&Resized> {
+        let own = || self.geometry().map(|f| (f.value, f.stderr));
+        let other = self.resized.as_ref();
+        other.filter(|other| other.is_elsewhere(own()))
+    }
+
+    /// What is said first of another size.
+    pub(super) fn or_as_large(&self) -> String {
+        let told = |other| format!(" {}", self.as_large(other));
+        self.moved().map_or(String::new(), told)
+    }
+
+    /// What is said of another size of the surface.
+    pub(super) fn as_large(&self, other: &Resized) -> String {
+        let each: Vec<_> = self.geometry().zip(&other.values).collect();
+        let moved = |(f, x): &(&Calibrated, &f64)| (*x - f.value).abs() / f.stderr;
+        let most = each.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)));
+        other.told(&most.map_or(String::new(), |(f, x)| {
+            format!("{} {}", f.name, with_unit(**x, 3, &f.unit))
+        }))
     }
 
     pub(super) fn searched(&self) -> String {

@@ -1,6 +1,7 @@
 //! Two places that make the same photographs.
 
 use super::*;
+use crate::lab::geometry::resized::resized;
 use crate::scene::file::{Layout, SpotsTable};
 
 /// Spots, view and camera on the line x = 5, about which the hidden surface is symmetric.
@@ -67,5 +68,36 @@ fn a_place_that_makes_the_same_photographs_is_told() {
             "{off} {:?}",
             one.elsewhere
         );
+    }
+}
+
+/// A board that the scene has 0.8 or 1.25 times as large as it is: that it is likelier with the
+/// right size is told; of that size nothing.
+#[test]
+fn a_board_of_another_size_is_told() {
+    let right = small("bench", 8);
+    let elements = Some([4; 2]);
+    let of = MatrixModel::with(&right, Kernel::Physical, elements, Occlusion::Ignored);
+    let rho: Vec<f64> = (0..16).map(|k| 0.4 + 0.1 * f64::from(k % 4)).collect();
+    let clean = of.unwrap().phi_of(&rho);
+    let stderr = clean.map(|x| 2e-3 * x);
+    let mut random = normal(7);
+    let phi = clean.zip_map(&stderr, |x, s| x + s * random()[0]);
+    let found = |scene: &Scene| {
+        let plan = plan(&["hidden.normal"], 4);
+        plan.calibrate(scene, &unexplained(&phi, &stderr), Control::none())
+            .unwrap()
+    };
+    let own = found(&right);
+    assert!(own.is_found() && own.resized.is_none(), "{:?}", own.resized);
+    for (factor, scene) in resized(&right) {
+        let found = found(&scene);
+        let other = found.resized.as_ref().unwrap();
+        assert!((other.factor * factor - 1.0).abs() < 1e-12, "{other:?}");
+        let off = (other.values[0] - own.found[0].value) / own.found[0].stderr;
+        assert!(off.abs() < 1.0, "{off} {other:?}");
+        let told = found.describe();
+        let all = told.sentence + &told.notes.concat();
+        assert!(all.contains("may have its size WRONG"), "{all}");
     }
 }

@@ -206,9 +206,9 @@ fn another_size_of_the_surface_is_told() {
     let (own, small, large) = (of(1.0), of(0.8), of(1.25));
     assert!(own.is_found() && own.resized.is_none(), "{:?}", own.resized);
     for (found, factor) in [(small, 1.25), (large, 0.8)] {
-        let other = found.resized.unwrap();
+        let other = found.resized.as_ref().unwrap();
         assert_eq!(other.factor, factor);
-        let off = (other.size - own.size.unwrap()) / own.stderr().unwrap();
+        let off = (other.values[0] - own.size.unwrap()) / own.stderr().unwrap();
         assert!(
             off.abs() < 1.0 && other.log_likelier > 5.0,
             "{off} {other:?}"
