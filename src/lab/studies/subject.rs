@@ -98,11 +98,10 @@ impl Subject {
         scene.with_cells(&from_the_top(columns, &values))
     }
 
-    /// Elements along u and v for it, `own` where they show it.
+    /// Elements along u and v for it, at least `own`: of a board the least that its checks divide.
     pub(super) fn elements(self, own: [usize; 2]) -> [usize; 2] {
         match self {
-            Self::Board(n) if own.iter().all(|m| m % n == 0) => own,
-            Self::Board(n) => [n; 2],
+            Self::Board(n) => own.map(|m| m.next_multiple_of(n)),
             Self::Letter => [14; 2],
             Self::Card => [47, 31],
         }
@@ -182,6 +181,19 @@ fn from_the_top(columns: usize, values: &[f64]) -> Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A board is on elements that its checks divide, no fewer than there are.
+    #[test]
+    fn checks_divide_their_elements() {
+        let cases = [
+            (2, [5, 3], [6, 4]),
+            (4, [8, 8], [8, 8]),
+            (16, [8, 4], [16, 16]),
+        ];
+        for (checks, own, want) in cases {
+            assert_eq!(Subject::Board(checks).elements(own), want);
+        }
+    }
 
     /// The F as it is read: bright upper left, dark lower right, no symmetry; the card has a white
     /// rim's share of its area. Means over elements keep the area's mean.
