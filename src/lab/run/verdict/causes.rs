@@ -15,6 +15,7 @@ const STRAIGHT: f64 = 10.0;
 /// parameter chosen among a hundred.
 const MISSES: f64 = 3.9;
 pub(super) const NO_SINGLE: &str = "no single parameter of the scene explains it";
+const MORE_THAN_CHANCE: &str = ", which is more than chance: something else is off too";
 /// Causes that are named beside the most likely one.
 const NAMED: usize = 3;
 
@@ -26,17 +27,16 @@ impl Score {
         let Some(picture) = &self.picture else {
             return single;
         };
-        let left = significant(picture.chi2_per_dof, 4);
-        let fitted = format!(
-            "all {} reflectances fitted together between 0 and 1",
-            picture.elements
-        );
         let explains = chi_square_sf(picture.chi2_per_dof * dof, dof) >= level;
+        let leaves = format!(
+            "all {} reflectances fitted together between 0 and 1 leave χ²/dof {}{}",
+            picture.elements,
+            significant(picture.chi2_per_dof, 4),
+            if explains { "" } else { MORE_THAN_CHANCE }
+        );
         let unexplained = picture.chi2_per_dof - 1.0 > UNEXPLAINED * (chi2_per_dof - 1.0);
         if !explains && unexplained {
-            return format!(
-                "{single}. Another picture does not explain it: {fitted} leave χ²/dof {left}"
-            );
+            return format!("{single}. Another picture does not explain it: {leaves}");
         }
         match (picture.is_missed, picture.misses.abs() > MISSES) {
             (true, false) => {
@@ -46,17 +46,17 @@ impl Score {
                     "of single parameters "
                 };
                 format!(
-                    "another picture than the scene's, element by element: {fitted} leave χ²/dof {left}; {of}{single}"
+                    "another picture than the scene's, element by element: {leaves}; {of}{single}"
                 )
             }
             (false, true) => {
-                format!("{single}. Another picture explains less: {fitted} leave χ²/dof {left}")
+                format!("{single}. Another picture explains less: {leaves}")
             }
             (false, false) => format!(
-                "{single}; not told from another picture than the scene's, element by element: {fitted} leave χ²/dof {left}"
+                "{single}; not told from another picture than the scene's, element by element: {leaves}"
             ),
             (true, true) => format!(
-                "{single}. It and another picture each explain what the other does not: {fitted} leave χ²/dof {left}"
+                "{single}. It and another picture each explain what the other does not: {leaves}"
             ),
         }
     }
@@ -106,17 +106,18 @@ impl Score {
             format!("; not told from {}{more}", named.join(", "))
         };
         let more = match (explains, first.is_followed) {
-            (true, true) => "",
-            (true, false) if first.z.abs() < STRAIGHT => "",
-            (true, false) => "; its value is a first step, as if the model were straight",
-            (false, true) => ", which is more than chance: something else is off too",
+            (true, is_followed) if is_followed || first.z.abs() < STRAIGHT => {
+                ", and its ± if nothing else is off"
+            }
+            (true, _) => "; its value is a first step, as if the model were straight",
+            (false, true) => MORE_THAN_CHANCE,
             (false, false) => {
                 ", which is more than chance: it is not small against the scene, and its value a first \
                  step, or something else is off too"
             }
         };
         format!(
-            "{}{same}{as_good}; χ²/dof {} with it fitted{more}",
+            "{}{same}{as_good}; χ²/dof {} with it alone fitted{more}",
             first.fitted(),
             significant(first.chi2_per_dof, 4)
         )

@@ -77,6 +77,11 @@ fn what_explains_not_all_says_so() {
         score.cause(40.0, 1000.0, 1e-3)
     };
     assert!(!told(1.02).contains("more than chance"), "{}", told(1.02));
+    assert!(
+        told(1.02).contains("its ± if nothing else is off"),
+        "{}",
+        told(1.02)
+    );
     assert!(told(1.3).contains("more than chance"), "{}", told(1.3));
     assert!(
         told(1.02).contains("albedo of `wall` −96.8"),
@@ -107,6 +112,7 @@ fn a_picture_is_named_by_what_it_explains() {
     let [first, single] = ["another picture than the scene's", "hinge angle +6.40"];
     for (left, misses, is_missed, starts, holds) in [
         (1.0, 3.0, true, first, "of single parameters hinge angle"),
+        (1.3, 3.0, true, first, "leave χ²/dof 1.300, which is more"),
         (1.0, 5.0, false, single, "explains less"),
         (1.0, -3.0, false, single, "not told from another picture"),
         (1.0, -5.0, true, single, "each explain"),
