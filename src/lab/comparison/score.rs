@@ -53,7 +53,9 @@ pub struct Score {
     pub shadows_stay: bool,
 }
 
-/// What is not tested of measured light: the picture is taken as the scene has it.
+/// What is not tested of measured light: the picture is taken as the scene has it, and light goes
+/// by the square of a spot's size, which has no slope at a point.
+pub(in crate::lab) const SIZE_OF_SPOTS: &str = "whether the spots, taken for points, have a size";
 pub(in crate::lab) const SINGLE_ELEMENTS: &str = "the reflectance of single elements";
 
 impl Score {

@@ -5,14 +5,14 @@ use std::sync::{Arc, OnceLock};
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, Occlusion, converged, is_obstructed};
 use crate::num::named::named;
-use crate::scene::Scene;
+use crate::scene::{Profile, Scene};
 
 use super::agreement::{Agreement, agree};
 use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
 use super::grounds::{Basis, Grounds};
 use super::measured::{Measured, ValidationError};
-use super::score::{Derivatives, ElementLight, SINGLE_ELEMENTS};
+use super::score::{Derivatives, ElementLight, SINGLE_ELEMENTS, SIZE_OF_SPOTS};
 use super::unmodelled::unmodelled;
 
 named! {
@@ -145,6 +145,9 @@ pub fn validate(
         let is_fitted = is_known || score.picture.is_some();
         if !is_fitted && hidden.any(|(_, s)| s.elements != [1, 1]) {
             score.untested.push(SINGLE_ELEMENTS.to_owned());
+        }
+        if !is_known && scene.laser.profile == Profile::Ideal {
+            score.untested.push(SIZE_OF_SPOTS.to_owned());
         }
     }
     if occlusion == Occlusion::Ignored && is_obstructed(scene) {
