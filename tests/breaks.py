@@ -3535,6 +3535,42 @@ BREAKS = [
         "lab::geometry::calibrate::tests::edge::a_difference_at_an_edge_takes_the_other_side",
         48,
     ),
+    Break(
+        "A misplaced occluder is held against the model that shows the board",
+        "src/lab/studies/occluder/tasks.rs",
+        "Some(subject.elements(self.elements()))",
+        "Some(self.elements())",
+        "lib",
+        "lab::studies::occluder::tasks::tests::darkness_tells_nothing",
+        48,
+    ),
+    Break(
+        "A picture that leaves more than chance says so",
+        "src/lab/run/verdict/causes.rs",
+        "if explains { \"\" } else { MORE_THAN_CHANCE }",
+        "if explains { \"\" } else { \"\" }",
+        "lib",
+        "lab::run::verdict::causes::tests::a_picture_is_named_by_what_it_explains",
+        48,
+    ),
+    Break(
+        "Values whose shares read alike are not ranked",
+        "src/lab/studies/sweep/describe.rs",
+        "if left(best) == left(worst) {",
+        "if left(best).is_empty() {",
+        "lib",
+        "lab::studies::sweep::describe::tests::roundings_are_no_difference",
+        48,
+    ),
+    Break(
+        "Why a part of a budget is more than the sum is said",
+        "src/lab/studies/budget/describe.rs",
+        "let sign = if t.size.value > c.sum.value {",
+        "let sign = if t.size.value < 0.0 {",
+        "lib",
+        "lab::studies::budget::describe::tests::a_budget_is_told_as_it_is",
+        48,
+    ),
 ]
 
 

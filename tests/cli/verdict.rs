@@ -370,6 +370,8 @@ fn what_is_left_out_does_not_count() {
     let found: serde_json::Value = serde_json::from_str(&ended.exits(0).stdout).unwrap();
     let counted = files[2].1.iter().filter(|x| **x == 0.0).count();
     assert_eq!(found["entries"], counted, "{found}");
+    let untested = found["score"]["untested"].to_string();
+    assert!(untested.contains("taken for points"), "{untested}");
     for (name, matrix) in &files[..2] {
         let holes = matrix.zip_map(
             &files[2].1,

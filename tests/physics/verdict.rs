@@ -232,7 +232,11 @@ fn every_deviation_is_found_by_name() {
     for errors in ALL {
         let first = tested(&scene, &traced(right(), errors, 0), errors, 1e-3);
         let score_of = score(&first);
-        assert_eq!(score_of.untested, ["the reflectance of single elements"]);
+        let sizes = "whether the spots, taken for points, have a size";
+        assert_eq!(
+            score_of.untested,
+            ["the reflectance of single elements", sizes]
+        );
         let third = score_of.spots.iter().filter(|d| d.spot == Some(3));
         for stated in score_of.deviations.iter().chain(third) {
             let injected = 2.0 * stated.detectable;
