@@ -90,7 +90,7 @@ const fn length(name: &'static str, motion: Motion) -> Misplaced {
 /// Everything that is tried.
 pub(in crate::lab) const ALL: [Misplaced; 18] = [
     sized("hinge angle", Size::Angle, Motion::Turn(hinge)),
-    sized("yaw of S2", Size::Angle, Motion::Turn(yaw_axis)),
+    sized("yaw of S2", Size::Angle, Motion::Number("hidden.yaw")),
     length(
         "S2 along its normal",
         Motion::Shift(|scene| Some(first_hidden(scene)?.at([0.5; 2]).normal)),
@@ -222,23 +222,6 @@ fn first_hidden(scene: &Scene) -> Option<&Shape> {
 
 fn hinge(scene: &Scene) -> Option<[DVec3; 2]> {
     scene.hinge().map(|(point, axis)| [point, axis])
-}
-
-/// The axis through the middle of the first hidden surface that lies in its plane at right angles
-/// to the hinge (to u, where there is no hinge), to the side of v: the turn is that of
-/// `hidden.yaw`.
-fn yaw_axis(scene: &Scene) -> Option<[DVec3; 2]> {
-    let middle = first_hidden(scene)?.at([0.5; 2]);
-    let along = match scene.hinge() {
-        Some((_, axis)) => axis,
-        None => along_u(scene)?,
-    };
-    let axis = middle.normal.cross(along).try_normalize()?;
-    let along_v = side(scene, [[0.5, 0.0], [0.5, 1.0]])?;
-    Some([
-        middle.position,
-        if axis.dot(along_v) < 0.0 { -axis } else { axis },
-    ])
 }
 
 fn along_u(scene: &Scene) -> Option<DVec3> {

@@ -71,6 +71,17 @@ impl Neighbours {
     /// patterns, and the largest Σ s² z²/(Σ s² · mean of z²) above 1, where it is larger in the
     /// light, say.
     pub(super) fn inflation(&self) -> f64 {
+        let r = self.correlation().unwrap_or(0.0);
+        let n = self.own.ncols() - 1;
+        let mean = self.own[(n, n)] / self.entries;
+        let own = self.squares.iter().enumerate();
+        let own = own.map(|(k, square)| square / (self.own[(k, k)] * mean));
+        own.fold(1.0, f64::max) * ((1.0 + r) / (1.0 - r)).powi(2)
+    }
+
+    /// The correlation r of what is left of neighbours beside the patterns, where it is more than
+    /// chance.
+    pub(super) fn correlation(&self) -> Option<f64> {
         let n = self.own.ncols() - 1;
         let patterns = self.own.view((0, 0), (n, n)).into_owned();
         let along = self.own.column(n).rows(0, n).into_owned();
@@ -79,11 +90,7 @@ impl Neighbours {
         rest.rows_mut(0, n)
             .copy_from(&-taken.unwrap_or_else(|| DVector::zeros(n)));
         let [squares, beside] = [&self.own, &self.beside].map(|of| rest.dot(&(of * &rest)));
-        let r = correlated(beside, squares, self.entries).unwrap_or(0.0);
-        let mean = self.own[(n, n)] / self.entries;
-        let own = self.squares.iter().enumerate();
-        let own = own.map(|(k, square)| square / (self.own[(k, k)] * mean));
-        own.fold(1.0, f64::max) * ((1.0 + r) / (1.0 - r)).powi(2)
+        correlated(beside, squares, self.entries)
     }
 }
 

@@ -201,7 +201,8 @@ impl LocatedPlan {
             .unwrap_or_else(|| scene.clone());
         let nearby = peak.map_or(step, |peak| peak.stderr);
         let at = (best.size, nearby);
-        let light_left_out = self.light_left_out((scene, altered), at, seen, &lengths)?;
+        let (light_left_out, neighbours) =
+            self.light_left_out((scene, altered), at, seen, &lengths)?;
         let fit = self.fit(&there, seen, &lengths)?;
         let errors = [peak.map(|peak| peak.stderr), by_frames];
         let elsewhere = not_told(log_likelihood, &others, errors);
@@ -239,6 +240,7 @@ impl LocatedPlan {
             is_noise_known: photographs.stderr.is_some(),
             fit,
             light_left_out,
+            neighbours,
             shared: photographs.certainty.shared(),
         })
     }

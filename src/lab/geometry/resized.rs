@@ -59,9 +59,15 @@ impl Resized {
         }
     }
 
-    /// Whether it is told, of errors whose squares are so many times those by the curvature.
+    /// ln of how much likelier it must be to be told, of errors whose squares are so many times
+    /// those by the curvature.
+    pub(super) fn least(times: f64) -> f64 {
+        LIKELIER * times
+    }
+
+    /// Whether it is told, of such errors.
     pub(super) fn is_told(&self, times: f64) -> bool {
-        self.log_likelier > LIKELIER * times
+        self.log_likelier > Self::least(times)
     }
 
     /// Whether an unknown is elsewhere, of these estimates and standard errors.

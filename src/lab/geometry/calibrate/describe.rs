@@ -214,6 +214,11 @@ impl Calibration {
                 figure(-left, 2),
                 figure(rms, 2)
             ),
+            None if self.neighbours.is_none() && self.shared.is_none() => format!(
+                "standard errors that are too small (what is left is {} times as large and hangs together no \
+                 more than noise does), or the order of the spots, say",
+                figure(rms, 2)
+            ),
             None => "the order of the spots, say".to_owned(),
         }
     }

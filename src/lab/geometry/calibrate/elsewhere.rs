@@ -2,8 +2,8 @@
 //!
 //! Spots and view on an axis of symmetry of the hidden surface make the same photographs of it
 //! turned to the left as to the right, each with a picture of its own, and starts near one place
-//! end there. So from the likeliest place one parameter at a time is moved over evenly spaced values
-//! and to −θ_k, the others staying, at the noise of the first stage, where valleys are wide, and at
+//! end there. So from the likeliest place one parameter at a time is moved farther and farther to
+//! both sides of the scene, and to −θ_k, the others staying, at the noise of the first stage, where valleys are wide, and at
 //! the last one; where the cost is less than beside, a search goes down from that noise. Where it
 //! ends is not told from the likeliest place, at 1 %, where
 //!
@@ -15,14 +15,16 @@ use serde::Serialize;
 
 use super::descent::{Problem, State};
 use super::field::End;
-use super::{Calibrated, CalibrationPlan};
+use super::{Calibrated, CalibrationPlan, Stage};
 use crate::lab::error::LabError;
 use crate::lab::geometry::located::NOT_TOLD;
 use crate::num::linalg::Cholesky;
 use crate::transport::Control;
 
-/// Values of a parameter to each side of the scene's, and typical sizes from one to the next.
-pub(super) const SIDE: i32 = 6;
+/// Values of a parameter to each side of the scene's, in typical sizes: valleys are as wide as they
+/// are far apart.
+pub(super) const STEPS: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 20.0, 30.0, 45.0];
+pub(super) const FARTHEST: f64 = STEPS[STEPS.len() - 1];
 /// Parameters above which only the starts look for other places.
 pub(super) const MOST: usize = 12;
 /// Standard errors of a parameter between what the searches at one noise lead to, below which they
@@ -57,32 +59,49 @@ impl CalibrationPlan {
         if count > MOST {
             return Ok(ends);
         }
-        let errors = problem.errors(&best.state)?;
-        for (k, size) in sizes.iter().enumerate().take(count) {
-            let step = self.spread * problem.priors[k].unwrap_or(*size);
-            for noise in [problem.first, best.state.factor] {
+        // A field of errors is found from noise of single pixels on.
+        let last = (!self.error_field).then_some(best.state.factor);
+        for noise in [Some(problem.first), last].into_iter().flatten() {
+            for (k, size) in sizes.iter().enumerate().take(count) {
+                let step = self.spread * problem.priors[k].unwrap_or(*size);
                 for start in problem.valleys((&best.state, noise), k, step, control)? {
-                    let (first, _) = problem.stage(&start, noise, control)?;
-                    let mut passed = best.stages.iter();
-                    let errors_there = problem.errors(&first)?;
-                    let is_passed =
-                        |values: &[f64]| gap(values, &first.values, &errors_there) < SAME;
-                    if passed.any(|stage| stage.noise == noise && is_passed(&stage.values)) {
-                        continue;
-                    }
-                    let end = self.end(problem, &first.values, noise, control)?;
-                    let is_known =
-                        |other: &End| gap(&other.state.values, &end.state.values, &errors) < APART;
-                    if !ends.iter().chain([best]).any(is_known) {
-                        ends.push(End {
-                            is_of_start: false,
-                            ..end
-                        });
+                    match self.other_end(problem, (&start, noise), best, control) {
+                        Ok(Some(end))
+                            if !ends.iter().any(|other| problem.are_same(other, &end)) =>
+                        {
+                            ends.push(end);
+                        }
+                        Err(LabError::Stopped(stopped)) => return Err(stopped.into()),
+                        // Where there is no light there is no place.
+                        _ => {}
                     }
                 }
             }
         }
         Ok(ends)
+    }
+
+    /// Where a search from `start` at such a noise ends; none where that is where `best` is.
+    fn other_end(
+        &self,
+        problem: &Problem<'_>,
+        (start, noise): (&[f64], f64),
+        best: &End,
+        control: Control<'_>,
+    ) -> Result<Option<End>, LabError> {
+        let (first, _) = problem.stage(start, noise, control)?;
+        let errors = problem.errors(&first)?;
+        let same = |stage: &Stage| {
+            stage.noise == noise && gap(&stage.values, &first.values, &errors) < SAME
+        };
+        if best.stages.iter().any(same) {
+            return Ok(None);
+        }
+        let end = End {
+            is_of_start: false,
+            ..self.end(problem, &first.values, noise, control)?
+        };
+        Ok((!problem.are_same(best, &end)).then_some(end))
     }
 }
 
@@ -97,8 +116,8 @@ impl Problem<'_> {
         control: Control<'_>,
     ) -> Result<Vec<Vec<f64>>, LabError> {
         let own = best.values[k];
-        let mut places: Vec<f64> = (-SIDE..=SIDE).map(|j| f64::from(j) * step).collect();
-        places.extend([own, -own]);
+        let sides = STEPS.iter().flat_map(|far| [far * step, -far * step]);
+        let mut places: Vec<f64> = sides.chain([0.0, own, -own]).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
         let at = |place: f64| {
@@ -106,14 +125,17 @@ impl Problem<'_> {
             values[k] = place;
             values
         };
-        let mut costs = Vec::new();
-        for place in &places {
-            control.check()?;
-            costs.push(
-                self.cost(&at(*place), noise, &best.prior)?
-                    .unwrap_or(f64::INFINITY),
-            );
-        }
+        let cost = |place: &f64| match self.cost(&at(*place), noise, &best.prior) {
+            Err(LabError::Stopped(stopped)) => Err(LabError::from(stopped)),
+            // Where there is no light there is no place.
+            found => control
+                .check()
+                .map_err(LabError::from)
+                .map(|()| found.ok().flatten()),
+        };
+        let costs = places.iter().map(cost);
+        let costs: Vec<Option<f64>> = costs.collect::<Result<_, _>>()?;
+        let costs: Vec<f64> = costs.iter().map(|c| c.unwrap_or(f64::INFINITY)).collect();
         let is_least = |j: &usize| {
             let before = j.checked_sub(1).is_none_or(|b| costs[*j] < costs[b]);
             let after = costs.get(j + 1).is_none_or(|c| costs[*j] <= *c);
@@ -128,12 +150,14 @@ impl Problem<'_> {
     /// Standard errors of the unknowns by the curvature.
     fn errors(&self, state: &State) -> Result<Vec<f64>, LabError> {
         let information = Cholesky::new(&self.information(&state.slope)).ok_or(LabError::DARK)?;
-        Ok(information
-            .inverse()
-            .diagonal()
-            .iter()
-            .map(|v| v.sqrt())
-            .collect())
+        let variances = information.inverse().diagonal();
+        Ok(variances.iter().map(|v| v.sqrt()).collect())
+    }
+
+    /// Whether two ends are one place, by the errors of the first.
+    fn are_same(&self, a: &End, b: &End) -> bool {
+        let errors = self.errors(&a.state);
+        errors.is_ok_and(|errors| gap(&a.state.values, &b.state.values, &errors) < APART)
     }
 }
 

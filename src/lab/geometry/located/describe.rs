@@ -10,9 +10,11 @@ use crate::lab::finding::{
 use crate::lab::geometry::light_left_out::LightLeftOut;
 use crate::lab::geometry::resized::Resized;
 use crate::lab::recovered::fit::Fit;
-use crate::lab::uncertainty::certainty::hang_together;
+use crate::lab::uncertainty::certainty::{hang_together, neighbours_share};
 use crate::num::digits::figure;
 
+/// What is left of other light's remainder above which more than noise is at work.
+const MUCH: f64 = 0.05;
 /// A standard error that is less than this part of the others is rounding.
 const FLAT: f64 = 1e-9;
 
@@ -89,6 +91,21 @@ impl Located {
     fn as_large(&self, other: &Resized) -> String {
         let size = figure(other.values[0], 3);
         other.told(&format!("{} {size} {}", self.what, self.unit))
+    }
+
+    /// What is said of neighbours of which what is left hangs together.
+    fn hangs_together(&self, r: f64) -> String {
+        let frames = "the error by the curvature is too small, and that by frames does not see it where all err alike";
+        match &self.picture {
+            Some(picture) if !self.is_noise_known && picture.misfit > MUCH => format!(
+                "Beware: {} of what other light leaves is explained by nothing, and hangs together from pixel to pixel \
+                 (correlation {}), which noise does not: the model lacks something (another shape, a surface, other light), \
+                 and place and picture may be wrong by more than their errors.",
+                figure(picture.misfit, 2),
+                figure(r, 2)
+            ),
+            _ => format!("Beware: {}.", neighbours_share(r, frames)),
+        }
     }
 
     /// Places that are not told from this one.
@@ -244,6 +261,8 @@ impl Describe for Located {
         let mut notes = vec![self.errors(), self.explained()];
         let which = self.shared.filter(|_| self.is_noise_known);
         notes.extend(which.map(|which| hang_together(which, "the place")));
+        let neighbours = self.neighbours.filter(|_| self.refuted().is_none());
+        notes.extend(neighbours.map(|r| self.hangs_together(r)));
         notes.extend(self.left_out_light().map(|light| light.beware("place")));
         let resized = self.resized.as_ref().filter(|_| self.moved().is_none());
         notes.extend(resized.map(|other| format!("Beware: {}", self.as_large(other))));

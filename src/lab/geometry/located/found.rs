@@ -111,6 +111,9 @@ pub struct Located {
     /// Kinds of light that the model leaves out, by what is left over; none where errors of entries
     /// hang together, and beside a background.
     pub light_left_out: Vec<LightLeftOut>,
+    /// Correlation of what is left of neighbouring pixels beside such light, where it is more than
+    /// chance.
+    pub neighbours: Option<f64>,
     /// Whether standard errors are stated.
     pub is_noise_known: bool,
     /// Which entries share their errors, where they do (no frame left out shows that), and what

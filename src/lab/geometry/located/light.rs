@@ -26,18 +26,18 @@ use crate::scene::Scene;
 impl LocatedPlan {
     /// Each kind of pattern at `size` against what is left of photographs whose errors are each
     /// entry's own, and not less the means of the frames; in units of what is left, and of how
-    /// its noise varies, where none is stated. Sizes so far off give ∂A/∂t: nothing is said where
-    /// the scene does not allow them.
+    /// its noise varies, where none is stated; and the correlation of what is left of neighbours.
+    /// Sizes so far off give ∂A/∂t: nothing is said where the scene does not allow them.
     pub(super) fn light_left_out(
         &self,
         (scene, altered): (&Scene, &Misplaced),
         (size, off): (f64, f64),
         seen: Seen<'_>,
         lengths: &Lengths,
-    ) -> Result<Vec<LightLeftOut>, LabError> {
+    ) -> Result<(Vec<LightLeftOut>, Option<f64>), LabError> {
         let is_own = seen.photographs.certainty.errors == Errors::Independent;
         if seen.common.is_some() || !is_own {
-            return Ok(Vec::new());
+            return Ok((Vec::new(), None));
         }
         let mut models = Vec::new();
         for size in [size - off, size, size + off] {
@@ -45,7 +45,7 @@ impl LocatedPlan {
             models.extend(there.transpose()?);
         }
         let [before, here, behind] = &models[..] else {
-            return Ok(Vec::new());
+            return Ok((Vec::new(), None));
         };
         let models = [before, here, behind];
         Ok(light(
@@ -64,14 +64,14 @@ fn light(
     ([before, here, behind], apart): ([&MatrixModel; 3], f64),
     lengths: &Lengths,
     columns: usize,
-) -> Result<Vec<LightLeftOut>, LinalgError> {
+) -> Result<(Vec<LightLeftOut>, Option<f64>), LinalgError> {
     let of = &seen.photographs;
     let all = frames_of(here, seen)?.all();
     let Some((fit, root)) = likeliest_length(&all, &lengths.roots)? else {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), None));
     };
     let Some(picture) = Spectrum::new(&all, root)? else {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), None));
     };
     let rho = picture.rho(fit.lambda);
     let light = here.phi_of(rho.as_slice());
@@ -109,7 +109,6 @@ fn light(
     let unit = fit.noise * fit.noise * neighbours.inflation();
     let unit = of.stderr.map_or(unit, |_| 1.0);
     let left = (&(f / unit), &(score / unit), &whole.map(|x| x / unit)[..]);
-    Ok(LightLeftOut::of(left, |chi2, dof| {
-        of.certainty.by_noise(chi2, dof)
-    }))
+    let light = LightLeftOut::of(left, |chi2, dof| of.certainty.by_noise(chi2, dof));
+    Ok((light, neighbours.correlation()))
 }

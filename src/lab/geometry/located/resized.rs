@@ -1,5 +1,7 @@
 //! The place with another size of the hidden surface.
 
+use rayon::prelude::*;
+
 use super::LocatedPlan;
 use super::frames::Seen;
 use super::place::{self, Lengths, Place};
@@ -13,8 +15,9 @@ use crate::transport::Control;
 /// Steps to the place, and errors that a step goes where the likeliest of three places is the last.
 const STEPS: usize = 6;
 const FAR: f64 = 4.0;
-/// Errors below which a step is the last.
+/// Errors below which a step is the last, and ln p by which a parabola may tell its peak too low.
 const NEAR: f64 = 0.1;
+const ROUGH: f64 = 1.0;
 
 impl LocatedPlan {
     /// The likelier of other sizes than that by which `best` was found, of errors σ_L and σ_J; none
@@ -34,7 +37,9 @@ impl LocatedPlan {
         };
         let mut found: Option<Resized> = None;
         for (factor, scene) in resized(scene) {
-            let top = self.top_near((&scene, altered), (best.size, error), seen, control)?;
+            let least = best.log_likelihood() + Resized::least(scatter(errors));
+            let near = (best.size, error, least);
+            let top = self.top_near((&scene, altered), near, seen, control)?;
             let Some(top) = top else { continue };
             let other = Resized {
                 factor,
@@ -46,32 +51,44 @@ impl LocatedPlan {
         Ok(found.filter(|other| other.is_told(scatter(errors))))
     }
 
-    /// The likeliest place of `scene` that parabolas through three places `error` apart lead to.
+    /// The likeliest place of `scene` that parabolas through three places `error` apart lead to, as
+    /// long as its ln p may be more than `least`.
     fn top_near(
         &self,
         (scene, altered): (&Scene, &Misplaced),
-        (mut at, error): (f64, f64),
+        (mut at, error, least): (f64, f64, f64),
         seen: Seen<'_>,
         control: Control<'_>,
     ) -> Result<Option<Place>, LabError> {
         let lengths = Lengths::of(&self.model(scene)?.places)?;
         let mut top: Option<Place> = None;
         for _ in 0..STEPS {
-            let mut three = Vec::new();
-            for size in [at - error, at, at + error] {
+            let place = |size: f64| -> Result<Option<Place>, LabError> {
                 control.check()?;
-                if let Some(there) = altered.apply(scene, size) {
-                    let model = self.model(&there)?;
-                    three.extend(Place::new(size, &model, seen, &lengths, false)?);
-                }
-            }
+                let Some(there) = altered.apply(scene, size) else {
+                    return Ok(None);
+                };
+                let model = self.model(&there)?;
+                Ok(Place::new(size, &model, seen, &lengths, false)?)
+            };
+            let sizes = [at - error, at, at + error];
+            let three = sizes.into_par_iter().map(place);
+            let three: Vec<Option<Place>> = three.collect::<Result<_, _>>()?;
+            let mut three: Vec<Place> = three.into_iter().flatten().collect();
             let likeliest = place::best(three.iter().map(Place::log_likelihood));
             let Some(k) = likeliest else { break };
-            let next = match place::parabola(&three, Place::log_likelihood) {
-                Some(peak) => peak.size,
-                None => three[k].size + FAR * error * (three[k].size - at).signum(),
+            let (next, is_near) = match place::parabola(&three, Place::log_likelihood) {
+                Some(peak) => {
+                    let off = (peak.size - three[k].size) / peak.stderr;
+                    let height = three[k].log_likelihood() + 0.5 * off * off;
+                    let is_low = height < least - ROUGH;
+                    (peak.size, is_low || (peak.size - at).abs() < NEAR * error)
+                }
+                None => {
+                    let side = (three[k].size - at).signum();
+                    (three[k].size + FAR * error * side, false)
+                }
             };
-            let is_near = (next - at).abs() < NEAR * error;
             let here = three.swap_remove(k);
             let is_higher = |top: &Place| top.log_likelihood() < here.log_likelihood();
             if top.as_ref().is_none_or(is_higher) {

@@ -2,7 +2,7 @@
 
 use super::with_unit;
 use crate::lab::finding::listed;
-use crate::lab::geometry::calibrate::elsewhere::{APART, MOST, SIDE};
+use crate::lab::geometry::calibrate::elsewhere::{APART, FARTHEST, MOST};
 use crate::lab::geometry::calibrate::{Calibrated, Calibration, Elsewhere};
 use crate::lab::geometry::resized::Resized;
 use crate::num::digits::figure;
@@ -73,7 +73,7 @@ impl Calibration {
             )
         } else {
             format!(
-                "Other places were looked for along one parameter at a time, as far as {SIDE} times its σ, 1°, 1 % or 1 % \
+                "Other places were looked for along one parameter at a time, as far as {FARTHEST} times its σ, 1°, 1 % or 1 % \
                  of the distance from the scene."
             )
         };
