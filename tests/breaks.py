@@ -3571,6 +3571,24 @@ BREAKS = [
         "lab::studies::budget::describe::tests::a_budget_is_told_as_it_is",
         48,
     ),
+    Break(
+        "What hangs together without a stated noise is told",
+        "src/lab/geometry/located/light.rs",
+        "Ok((light, neighbours.correlation()))",
+        "Ok((light, neighbours.correlation().filter(|r| *r > 1.0)))",
+        "lib",
+        "lab::geometry::located::tests::told::what_hangs_together_is_told_without_a_stated_noise",
+        48,
+    ),
+    Break(
+        "A board of another size is told by calibrate",
+        "src/lab/geometry/calibrate/resized.rs",
+        "log_likelier: best.total - end.total,",
+        "log_likelier: end.total - best.total,",
+        "lib",
+        "lab::geometry::calibrate::tests::elsewhere::a_board_of_another_size_is_told",
+        48,
+    ),
 ]
 
 

@@ -218,3 +218,34 @@ fn another_size_of_the_surface_is_told() {
         assert!(all.contains("may have its size WRONG"), "{all}");
     }
 }
+
+/// Without a stated noise too it is told that what is left of neighbouring pixels hangs together,
+/// as where the surface is turned; of noise of each pixel alone nothing.
+#[test]
+fn what_hangs_together_is_told_without_a_stated_noise() {
+    let scene = bench();
+    let yaw = misplaced::ALL.iter().find(|m| m.name == "yaw of S2");
+    let plan = LocatedPlan {
+        elements: Some([2; 2]),
+        steps: 7,
+        ..by_centres([-1.5, 1.5], 0)
+    };
+    for (turned, is_told) in [(0.0, false), (40.0, true)] {
+        let there = yaw.unwrap().apply(&scene, turned).unwrap();
+        let clean = plan.model(&there).unwrap().phi_of(&[0.9, 0.2, 0.3, 0.8]);
+        let level = 5e-3 * clean.mean();
+        let phi = &clean + noise(clean.nrows(), clean.ncols(), 9) * level;
+        let photographs = Unexplained {
+            phi: &phi,
+            stderr: None,
+            certainty: Certainty::STATED,
+            left_out: None,
+            patterns: None,
+        };
+        let found = plan.locate(&scene, &photographs, Control::none()).unwrap();
+        let notes = found.describe().notes.concat();
+        let told = notes.contains("hangs together from pixel to pixel");
+        assert_eq!(told, is_told, "{:?} {notes}", found.neighbours);
+        assert_eq!(found.neighbours.is_some(), is_told);
+    }
+}
