@@ -61,15 +61,23 @@ impl CalibrationPlan {
         }
         // A field of errors is found from noise of single pixels on.
         let last = (!self.error_field).then_some(best.state.factor);
+        let step = |(k, size): (usize, &f64)| self.spread * problem.priors[k].unwrap_or(*size);
+        let steps: Vec<f64> = sizes.iter().enumerate().take(count).map(step).collect();
+        // A whole turn leads to the same place.
+        let is_near = |end: &End| {
+            let pairs = end.state.values.iter().zip(&best.state.values);
+            let mut each = pairs.zip(&steps);
+            each.all(|((a, b), step)| (a - b).abs() <= 2.0 * FARTHEST * step)
+        };
         for noise in [Some(problem.first), last].into_iter().flatten() {
-            for (k, size) in sizes.iter().enumerate().take(count) {
-                let step = self.spread * problem.priors[k].unwrap_or(*size);
+            for (k, &step) in steps.iter().enumerate() {
                 for start in problem.valleys((&best.state, noise), k, step, control)? {
                     match self.other_end(problem, (&start, noise), best, control) {
-                        Ok(Some(end))
-                            if !ends.iter().any(|other| problem.are_same(other, &end)) =>
-                        {
-                            ends.push(end);
+                        Ok(Some(end)) => {
+                            let is_same = |other: &End| problem.are_same(other, &end);
+                            if is_near(&end) && !ends.iter().any(is_same) {
+                                ends.push(end);
+                            }
                         }
                         Err(LabError::Stopped(stopped)) => return Err(stopped.into()),
                         // Where there is no light there is no place.
