@@ -145,6 +145,8 @@ pub struct Calibration {
     pub held: Vec<AtEdge>,
     /// The starts.
     pub starts: Starts,
+    /// Whether other places and sizes of the surface were looked for beside the starts.
+    pub is_looked_around: bool,
     /// Other places that the photographs do not tell from this one.
     pub elsewhere: Vec<Elsewhere>,
     /// Another size of the hidden surface by which they are much likelier.

@@ -26,7 +26,7 @@ use crate::transport::Control;
 pub(super) const STEPS: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 20.0, 30.0, 45.0];
 pub(super) const FARTHEST: f64 = STEPS[STEPS.len() - 1];
 /// Parameters above which only the starts look for other places.
-pub(super) const MOST: usize = 12;
+const MOST: usize = 12;
 /// Standard errors of a parameter between what the searches at one noise lead to, below which they
 /// go on alike.
 const SAME: f64 = 0.1;
@@ -56,7 +56,7 @@ impl CalibrationPlan {
     ) -> Result<Vec<End>, LabError> {
         let count = problem.geometry.parameters.len();
         let mut ends: Vec<End> = Vec::new();
-        if count > MOST {
+        if !problem.is_looked_around() {
             return Ok(ends);
         }
         // A field of errors is found from noise of single pixels on.
@@ -114,6 +114,12 @@ impl CalibrationPlan {
 }
 
 impl Problem<'_> {
+    /// Whether other places and sizes are looked for: past what stands in the way, and of many
+    /// parameters, that takes several times as long as all starts.
+    pub(super) fn is_looked_around(&self) -> bool {
+        self.geometry.parameters.len() <= MOST && !self.geometry.is_obstructed()
+    }
+
     /// The unknowns where, along parameter `k` alone, the cost is less than at the values beside and
     /// that are not those of `best`.
     fn valleys(

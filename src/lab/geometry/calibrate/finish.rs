@@ -193,6 +193,7 @@ impl CalibrationPlan {
             is_settled: best.is_settled,
             held,
             starts,
+            is_looked_around: problem.is_looked_around(),
             elsewhere: elsewhere::not_told(&ends, &found),
             resized: None,
             grids: grids.collect(),

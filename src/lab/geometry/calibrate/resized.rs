@@ -10,8 +10,8 @@ use crate::model::{Kernel, MatrixModel, Occlusion};
 use crate::transport::Control;
 
 impl CalibrationPlan {
-    /// The likelier of other sizes, searched from `best` at its noise; none where the scene has
-    /// none.
+    /// The likelier of other sizes, searched from `best` at its noise; none where there is none, or
+    /// it is not looked for.
     ///
     /// # Errors
     /// [`LabError`]: no light, or it was stopped.
@@ -22,6 +22,9 @@ impl CalibrationPlan {
         control: Control<'_>,
     ) -> Result<Option<Resized>, LabError> {
         let mut found: Option<Resized> = None;
+        if !problem.is_looked_around() {
+            return Ok(None);
+        }
         for (factor, scene) in resized(problem.geometry.scene) {
             let ignored = Occlusion::Ignored;
             let model = MatrixModel::with(&scene, Kernel::Physical, self.elements, ignored)?;

@@ -2,7 +2,7 @@
 
 use super::with_unit;
 use crate::lab::finding::listed;
-use crate::lab::geometry::calibrate::elsewhere::{APART, FARTHEST, MOST};
+use crate::lab::geometry::calibrate::elsewhere::{APART, FARTHEST};
 use crate::lab::geometry::calibrate::{Calibrated, Calibration, Elsewhere};
 use crate::lab::geometry::resized::Resized;
 use crate::num::digits::figure;
@@ -67,15 +67,15 @@ impl Calibration {
                 self.starts.agree
             ),
         };
-        let looked = if self.geometry().count() > MOST {
-            format!(
-                "Of more than {MOST} parameters no other places were looked for but by the starts."
-            )
-        } else {
+        let looked = if self.is_looked_around {
             format!(
                 "Other places were looked for along one parameter at a time, as far as {FARTHEST} times its σ, 1°, 1 % or 1 % \
-                 of the distance from the scene."
+                 of the distance from the scene, and other sizes of a single surface."
             )
+        } else {
+            "Of many parameters, and past what stands in the way, no other places or sizes of the surface were looked \
+             for but by the starts."
+                .to_owned()
         };
         let steps: usize = self.stages.iter().map(|s| s.steps).sum();
         format!(
