@@ -3,9 +3,9 @@
 //! Spots and view on an axis of symmetry of the hidden surface make the same photographs of it
 //! turned to the left as to the right, each with a picture of its own, and starts near one place
 //! end there. So from the likeliest place one parameter at a time is moved farther and farther to
-//! both sides of the scene, and to −θ_k, the others staying, at the noise of the first stage, where valleys are wide, and at
-//! the last one; where the cost is less than beside, a search goes down from that noise. Where it
-//! ends is not told from the likeliest place, at 1 %, where
+//! both sides of the scene, and to −θ_k, the others staying, at the noise of the first stage, where
+//! valleys are wide, and at the last one; where the cost is less than beside, a search goes down
+//! from that noise. Where it ends is not told from the likeliest place, at 1 %, where
 //!
 //! > ln p − ln p′ ≤ ½ χ²₁ · max(1, (σ′/σ)²),   χ²₁ = 6.63,
 //!
@@ -120,8 +120,8 @@ impl Problem<'_> {
         self.geometry.parameters.len() <= MOST && !self.geometry.is_obstructed()
     }
 
-    /// The unknowns where, along parameter `k` alone, the cost is less than at the values beside and
-    /// that are not those of `best`.
+    /// The unknowns where, along parameter `k` alone, the cost is less than at the values beside, but
+    /// for those of `best`.
     fn valleys(
         &self,
         (best, noise): (&State, f64),

@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn darkness_tells_nothing() {
         let row = |size: f64| {
-            // Two checks do not divide five elements; a plate that is hardly misplaced is the right one.
+            // Two checks do not divide five elements; a plate hardly misplaced is the right one.
             let plan = Plan {
                 kinds: vec![Kind::Plate],
                 spots: Vec::new(),

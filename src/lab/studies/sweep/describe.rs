@@ -161,8 +161,8 @@ impl Describe for Sweep {
 mod tests {
     use super::*;
 
-    /// Shares that differ by rounding are no difference, by less than the digits that are told hardly
-    /// any.
+    /// Shares that differ by rounding are no difference, by less than the digits that are told
+    /// hardly any.
     #[test]
     fn roundings_are_no_difference() {
         let step = |value: &str, risk| SweepStep {
