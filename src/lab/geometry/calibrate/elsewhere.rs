@@ -120,8 +120,8 @@ impl Problem<'_> {
         self.geometry.parameters.len() <= MOST && !self.geometry.is_obstructed()
     }
 
-    /// The unknowns where, along parameter `k` alone, the cost is less than at the values beside, but
-    /// for those of `best`.
+    /// The unknowns where, along parameter `k` alone, the cost is less than at the values beside,
+    /// but for those of `best`.
     fn valleys(
         &self,
         (best, noise): (&State, f64),
