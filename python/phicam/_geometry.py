@@ -167,7 +167,9 @@ def calibrate(
         free_scale=flag(free_scale, "free_scale"),
         error_field=flag(error_field, "error_field"),
         background=flag(background, "background"),
-        known=phi.known(background),
+        replicates=phi.replicates,
+        # A background takes what all spots of a pixel of photographs share.
+        errors_name="independent" if background and not phi.is_rendered else phi.errors,
         elements=pair(elements, "elements"),
         considered=flag(occlusion, "occlusion"),
         integration_name=integration,
@@ -244,7 +246,9 @@ def locate(
         flux,
         stderr,
         flags,
-        known=phi.known(background),
+        replicates=phi.replicates,
+        # A background takes what all spots of a pixel of photographs share.
+        errors_name="independent" if background and not phi.is_rendered else phi.errors,
         what=what,
         range=(low, high),
         steps=count,

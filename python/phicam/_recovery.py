@@ -354,7 +354,7 @@ def recover(
     >>> bool(numpy.abs(found.reflectance - x).max() < 1e-2)
     True
     """
-    own, unknown = False, 0.0
+    own = False
     if isinstance(phi, Phi):
         flux = phi.flux
         if left_out is None:
@@ -362,9 +362,10 @@ def recover(
         own = stderr is None and noise is None
         if own:
             stderr = phi.stderr
-            its_errors, its_replicates, unknown = phi.known(background)
-            errors = errors or its_errors  # type: ignore[assignment]
-            replicates = its_replicates if replicates is None else replicates
+            # A background takes what all spots of a pixel of photographs share.
+            absorbed = background and not phi.is_rendered
+            errors = errors or ("independent" if absorbed else phi.errors)  # type: ignore[assignment]
+            replicates = phi.replicates if replicates is None else replicates
         if left_out is None and "spots" in phi.settings:
             left_out = np.ones(flux.shape)
             left_out[:, phi.settings["spots"]] = 0.0
@@ -437,11 +438,8 @@ def recover(
         is_grid=is_grid,
         settings=settings,
         beside=others,
-        known=(
-            errors or "independent",
-            None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
-            unknown,
-        ),
+        replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+        errors_name=errors or "independent",
         trusted=named is None,
         threads=threads_of(threads),
     )

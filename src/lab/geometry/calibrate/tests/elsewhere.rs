@@ -4,17 +4,18 @@ use super::*;
 use crate::lab::geometry::resized::resized;
 use crate::scene::file::{Layout, SpotsTable};
 
-/// Spots, view and camera on the line x = 5, about which the hidden surface is symmetric.
+/// Spots, view and camera on the line x = 5, about which the hidden surface is symmetric; that does
+/// not stand in the camera's or the laser's way.
 fn on_the_axis() -> Scene {
     let mut file = SceneFile::builtin("bench").unwrap();
     let laser = file.laser.as_mut().unwrap();
-    laser.position[0] = 5.0;
+    laser.position = [5.0, -10.0, 60.0];
     laser.spots = SpotsTable {
         layout: Layout::List,
         points: Some((0..16).map(|k| [5.0, 1.2 + 0.48 * f64::from(k)]).collect()),
         ..SpotsTable::default()
     };
-    file.camera.position[0] = 5.0;
+    file.camera.position = [5.0, -10.0, 60.0];
     file.camera.view.x = [3.5, 6.5];
     file.camera.pixels = [1, 12];
     Scene::new(&file, None).unwrap()
@@ -29,24 +30,29 @@ fn a_place_that_makes_the_same_photographs_is_told() {
     let yaw = Parameter::named(&scene, "hidden.yaw").unwrap();
     for turned in [12.0, -12.0] {
         let there = scene.displaced(&yaw, &[turned]).unwrap();
-        let elements = Some([1, 3]);
+        let elements = Some([4, 3]);
+        let rho: Vec<f64> = (0..12)
+            .map(|k| 0.3 + 0.05 * f64::from((5 * k) % 12))
+            .collect();
         let of = |occlusion| MatrixModel::with(&there, Kernel::Physical, elements, occlusion);
-        let clean = of(Occlusion::Considered).unwrap().phi_of(&[0.8, 0.3, 0.6]);
-        let stderr = clean.map(|_| 2e-3 * clean.mean());
+        let clean = of(Occlusion::Considered).unwrap().phi_of(&rho);
+        let stderr = clean.map(|_| 5e-5 * clean.mean());
         let mut random = normal(6);
         let phi = clean.zip_map(&stderr, |x, s| x + s * random()[0]);
         let plan = CalibrationPlan {
             elements,
             ..plan(&["hidden.yaw"], 3)
         };
-        let both = plan.calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+        let start = scene.displaced(&yaw, &[9.0]).unwrap();
+        let both = plan.calibrate(&start, &unexplained(&phi, &stderr), Control::none());
         let both = both.unwrap();
         let own = &both.found[0];
         let [other] = &both.elsewhere[..] else {
             panic!("{:?} {own:?}", both.elsewhere);
         };
-        let off = [own.value, other.values[0]].map(|at| (at.abs() - 12.0) / own.stderr);
-        let both_ways = own.value * other.values[0] < 0.0;
+        let places = [own.value, other.values[0]].map(|value| 9.0 + value);
+        let off = places.map(|at| (at.abs() - 12.0) / own.stderr);
+        let both_ways = places[0] * places[1] < 0.0;
         assert!(
             both_ways && off.iter().all(|off| off.abs() < 3.0),
             "{off:?}"
