@@ -130,12 +130,13 @@ impl Study for OccluderTasks {
             seed: plan.seed,
         };
         let (mut limits, mut seen) = (Vec::new(), Vec::new());
-        for subject in &plan.subjects {
-            let model = self.showing(&scene, *subject)?;
-            limits.push(limit.of(&self.scene, &model, *subject, control)?);
+        let shown = plan.subjects.iter().map(|s| self.showing(&scene, *s));
+        let shown: Vec<MatrixModel> = shown.collect::<Result<_, _>>()?;
+        for (subject, model) in plan.subjects.iter().zip(&shown) {
+            limits.push(limit.of(&self.scene, model, *subject, control)?);
             if plan.camera.samples > 0 {
                 let scene = subject.in_scene(&scene);
-                seen.push(plan.camera.photograph(&scene, &model, *subject, control)?);
+                seen.push(plan.camera.photograph(&scene, model, *subject, control)?);
             }
         }
         let shifts: &[f64] = if kind == Kind::None {
@@ -147,10 +148,9 @@ impl Study for OccluderTasks {
             control.check()?;
             let mut there = place;
             there.offset[0] += by;
-            let subject = plan.subjects[0];
+            let (subject, right) = (plan.subjects[0], &shown[0]);
             let wrong = self.showing(&at(&there)?, subject)?;
-            let right = self.showing(&scene, subject)?;
-            let truth = subject.albedo(&self.scene, &right);
+            let truth = subject.albedo(&self.scene, right);
             let exact = right.phi_of(&truth);
             let stderr = self.plan.noise.stderrs(&exact, plan.level);
             let photographs = Photographs::drawn(&exact, stderr, plan.seed);
