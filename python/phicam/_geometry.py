@@ -167,9 +167,7 @@ def calibrate(
         free_scale=flag(free_scale, "free_scale"),
         error_field=flag(error_field, "error_field"),
         background=flag(background, "background"),
-        replicates=phi.replicates,
-        # A background takes what all spots of a pixel of photographs share.
-        errors_name="independent" if background and not phi.is_rendered else phi.errors,
+        known=phi._known(background),
         elements=pair(elements, "elements"),
         considered=flag(occlusion, "occlusion"),
         integration_name=integration,
@@ -246,9 +244,7 @@ def locate(
         flux,
         stderr,
         flags,
-        replicates=phi.replicates,
-        # A background takes what all spots of a pixel of photographs share.
-        errors_name="independent" if background and not phi.is_rendered else phi.errors,
+        known=phi._known(background),
         what=what,
         range=(low, high),
         steps=count,

@@ -142,6 +142,22 @@ class Phi:
         return ERRORS.get(self.settings.get("estimator", ""), "independent")
 
     @property
+    def noise_unknown(self) -> float:
+        """Of photographs: variance of their variances over the squares of these, which all share; how well repeats tell the noise.
+
+        0 where the noise was given, and of a render. Recovery, verdict and calibration test a fit with it.
+        """
+        return float(self.account.get("noise_unknown") or self.account.get("unknown") or 0.0)
+
+    def _known(self, background: bool) -> tuple[str, int | None, float]:
+        """What is known of its errors: how they hang together, replicates, :attr:`noise_unknown`.
+
+        A background takes what all spots of a pixel of photographs share.
+        """
+        absorbed = background and not self.is_rendered
+        return ("independent" if absorbed else self.errors), self.replicates, self.noise_unknown
+
+    @property
     def unit(self) -> str:
         """Of `flux` and `stderr`: W, or counts (or counts/s) of photographs whose scale is unknown."""
         return str(self.account.get("unit", "W"))

@@ -354,7 +354,7 @@ def recover(
     >>> bool(numpy.abs(found.reflectance - x).max() < 1e-2)
     True
     """
-    own = False
+    own, unknown = False, 0.0
     if isinstance(phi, Phi):
         flux = phi.flux
         if left_out is None:
@@ -362,10 +362,9 @@ def recover(
         own = stderr is None and noise is None
         if own:
             stderr = phi.stderr
-            # A background takes what all spots of a pixel of photographs share.
-            absorbed = background and not phi.is_rendered
-            errors = errors or ("independent" if absorbed else phi.errors)  # type: ignore[assignment]
-            replicates = phi.replicates if replicates is None else replicates
+            its_errors, its_replicates, unknown = phi._known(background)
+            errors = errors or its_errors  # type: ignore[assignment]
+            replicates = its_replicates if replicates is None else replicates
         if left_out is None and "spots" in phi.settings:
             left_out = np.ones(flux.shape)
             left_out[:, phi.settings["spots"]] = 0.0
@@ -438,8 +437,11 @@ def recover(
         is_grid=is_grid,
         settings=settings,
         beside=others,
-        replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
-        errors_name=errors or "independent",
+        known=(
+            errors or "independent",
+            None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+            unknown,
+        ),
         trusted=named is None,
         threads=threads_of(threads),
     )

@@ -119,6 +119,7 @@ def validate(
     >>> phicam.validate(phi, wrong).agrees
     False
     """
+    unknown = 0.0
     if isinstance(phi, Phi):
         if not free_scale:
             phi.refuse_unscaled("the model is in W: say free_scale=True, or")
@@ -128,10 +129,10 @@ def validate(
         own = stderr is None
         stderr = phi.stderr if own else stderr
         left_out = phi.left_out if left_out is None else left_out
-        # A background takes what all spots of a pixel of photographs share.
-        absorbed = background and not phi.is_rendered
-        errors = errors or (phi.errors if own and not absorbed else "independent")  # type: ignore[assignment]
-        replicates = phi.replicates if own and replicates is None else replicates
+        if own:
+            its_errors, its_replicates, unknown = phi._known(background)
+            errors = errors or its_errors  # type: ignore[assignment]
+            replicates = its_replicates if replicates is None else replicates
         paths = phi.settings.get("samples") if own and phi.is_rendered else None
         frame_gain = phi.frame_gain if own and frame_gain is None else frame_gain
     elif model is None:
@@ -181,9 +182,12 @@ def validate(
         integration_name=integration,
         considered=occlusion is None or flag(occlusion, "occlusion"),
         significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
-        replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+        known=(
+            errors or "independent",
+            None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+            unknown,
+        ),
         paths=paths,
-        errors_name=errors or "independent",
         beside=others,
         threads=threads_of(threads),
     )

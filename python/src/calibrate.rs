@@ -17,7 +17,7 @@ use crate::errors::{Raise, input};
 use crate::findings::found;
 use crate::model::{integration, occlusion};
 use crate::scene::Scene;
-use crate::validate::errors as ways;
+use crate::validate::{Known, certainty};
 use crate::work::{fits, run};
 
 /// What may be looked for, each with what it is.
@@ -67,7 +67,7 @@ fn thinned(asked: Option<(usize, usize)>, scene: &scene::Scene) -> Option<[usize
 
 /// The geometry, estimated; the text of the calibrated scene beside it.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, background, replicates, errors_name, elements,
+#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, background, known, elements,
                     considered, integration_name, frame_polynomial, starts, spread, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
@@ -84,8 +84,7 @@ pub fn calibrate<'py>(
     free_scale: bool,
     error_field: bool,
     background: bool,
-    replicates: Option<u32>,
-    errors_name: &str,
+    known: Known,
     elements: Option<(usize, usize)>,
     considered: bool,
     integration_name: &str,
@@ -116,7 +115,7 @@ pub fn calibrate<'py>(
     fits(py, &scene.inner, move |scene| {
         need::calibrate(scene, elements)
     })?;
-    let known = Certainty::new(ways(errors_name)?, replicates);
+    let known = certainty(known)?;
     let beside = (frame_polynomial, known);
     let photographs = read(&scene.inner, phi, stderr, left_out, beside)?;
     let own = Arc::clone(&scene.inner);
@@ -133,7 +132,7 @@ pub fn calibrate<'py>(
 
 /// Where something is, by the likeliest of some sizes.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, replicates, errors_name, what, range, steps, elements, considered, integration_name,
+#[pyo3(signature = (scene, phi, stderr, left_out, *, known, what, range, steps, elements, considered, integration_name,
                     frame_polynomial, background, orders, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
@@ -145,8 +144,7 @@ pub fn locate<'py>(
     phi: &Bound<'py, PyAny>,
     stderr: Option<&Bound<'py, PyAny>>,
     left_out: Option<&Bound<'py, PyAny>>,
-    replicates: Option<u32>,
-    errors_name: &str,
+    known: Known,
     what: &str,
     range: (f64, f64),
     steps: usize,
@@ -178,7 +176,7 @@ pub fn locate<'py>(
     };
     let elements = plan.elements;
     fits(py, &scene.inner, move |scene| need::locate(scene, elements))?;
-    let known = Certainty::new(ways(errors_name)?, replicates);
+    let known = certainty(known)?;
     let beside = (frame_polynomial, known);
     let photographs = read(&scene.inner, phi, stderr, left_out, beside)?;
     let own = Arc::clone(&scene.inner);

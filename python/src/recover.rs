@@ -19,7 +19,7 @@ use crate::arrays::{array, errors, matrix, maybe, vector};
 use crate::beside::Given;
 use crate::errors::{Raise, input, named};
 use crate::model::Model;
-use crate::validate::errors as ways;
+use crate::validate::{Known, certainty};
 use crate::work::run;
 
 /// Copies of all matrices that are held at once.
@@ -122,8 +122,8 @@ impl Settings {
 /// Recovers by each of the methods; without `is_grid` nothing says how the elements lie; `trusted`
 /// orders what was found by how far it can be trusted.
 #[pyfunction]
-#[pyo3(signature = (model, phi, stderr, *, methods, is_grid, settings, beside, replicates,
-                    errors_name, trusted, threads))]
+#[pyo3(signature = (model, phi, stderr, *, methods, is_grid, settings, beside, known,
+                    trusted, threads))]
 #[expect(
     clippy::too_many_arguments,
     reason = "one for each keyword of Python's function"
@@ -137,8 +137,7 @@ pub fn recover<'py>(
     is_grid: bool,
     settings: Settings,
     beside: Given<'py>,
-    replicates: Option<u32>,
-    errors_name: &str,
+    known: Known,
     trusted: bool,
     threads: Option<usize>,
 ) -> PyResult<(Vec<Bound<'py, PyDict>>, Vec<(String, String)>)> {
@@ -162,7 +161,7 @@ pub fn recover<'py>(
     run(py, None, None, refuse)?.raise()?;
     let (phi, stderr) = (matrix(phi, "phi")?, errors(stderr, "stderr")?);
     let beside = beside.read()?;
-    let certainty = Certainty::new(ways(errors_name)?, replicates);
+    let certainty = certainty(known)?;
     let attempts = run(py, threads, None, move |control| {
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, certainty)

@@ -17,9 +17,17 @@ use crate::model::{integration, kernel, occlusion};
 use crate::scene::Scene;
 use crate::work::{fits, knows_its_light, run};
 
-/// How errors hang together, by its name.
-pub fn errors(name: &str) -> PyResult<Errors> {
-    named(name, "errors", Errors::ALL, Errors::name)
+/// How errors hang together, by its name; from how many replicates they were estimated; the variance
+/// of the entries' variances over their squares that all share.
+pub type Known = (String, Option<u32>, f64);
+
+/// What is known of errors.
+pub fn certainty((errors, replicates, unknown): Known) -> PyResult<Certainty> {
+    let errors = named(&errors, "errors", Errors::ALL, Errors::name)?;
+    Ok(Certainty {
+        unknown,
+        ..Certainty::new(errors, replicates)
+    })
 }
 
 /// Whether errors that all spots of a pixel have in common, a part `common` of the variance, matter.
@@ -38,7 +46,7 @@ type Verdict<'py> = (
 /// The verdict on Φcam.
 #[pyfunction]
 #[pyo3(signature = (scene, phi, stderr, *, kernel_name, integration_name, considered,
-                    significance, replicates, paths, errors_name, beside, threads))]
+                    significance, known, paths, beside, threads))]
 #[expect(
     clippy::too_many_arguments,
     reason = "one for each keyword of Python's function"
@@ -52,9 +60,8 @@ pub fn validate<'py>(
     integration_name: &str,
     considered: bool,
     significance: f64,
-    replicates: Option<u32>,
+    known: Known,
     paths: Option<u64>,
-    errors_name: &str,
     beside: Given<'py>,
     threads: Option<usize>,
 ) -> PyResult<Verdict<'py>> {
@@ -67,7 +74,7 @@ pub fn validate<'py>(
         significance,
         known: Certainty {
             paths,
-            ..Certainty::new(errors(errors_name)?, replicates)
+            ..certainty(known)?
         },
     };
     knows_its_light(&scene.inner)?;

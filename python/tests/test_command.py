@@ -173,6 +173,27 @@ def test_a_run_that_was_stopped_is_no_run(command, scene, tmp_path):
         phicam.load(tmp_path / "run")
 
 
+def test_noise_of_repeats(command, scene, tmp_path):
+    """What a few repeats leave unknown of the noise is part of the verdict, as of the command; Fisher's law of 2 × 24 pairs."""
+    columns, rows = scene.pixels
+    light = phicam.model(scene).phi()
+    counts = np.random.default_rng(3).poisson(light / light.mean() * 400, (2, *light.shape)) + 0.0
+    for spot in range(scene.shape[1]):
+        for shot in range(2):
+            frame = counts[shot, :, spot].reshape(rows, columns)[::-1]
+            np.save(tmp_path / f"frame-{2 * spot + shot:03}.npy", frame.astype(np.uint16))
+    (tmp_path / "scene.toml").write_text(scene.text)
+    (tmp_path / "list.toml").write_text('frames = "frame-*.npy"\nrepeats = 2\nscene = "scene.toml"\n')
+    command("import", tmp_path / "list.toml", "-o", tmp_path / "taken")
+    found = json.loads(command("validate", tmp_path / "taken", "--free-scale", "--json"))
+    taken = phicam.import_photographs(tmp_path / "list.toml")
+    for phi in (taken, phicam.load(tmp_path / "taken")):
+        assert phi.noise_unknown > 0.0
+        assert phicam.validate(phi, free_scale=True).values == found
+    known = phicam.Phi(taken.scene, taken.flux, taken.stderr)
+    assert phicam.validate(known, free_scale=True).values["chi2_p"] != found["chi2_p"]
+
+
 def test_study(command, run, scene, tmp_path):
     arguments = ["--samples", "64,256"]
     command("study", "convergence", run.parent / "scene.toml", "-o", tmp_path, *arguments)
