@@ -16,10 +16,9 @@ use super::set::{ChannelName, FrameTable, Set};
 use super::shots::Shots;
 use super::takes::Take;
 use super::warnings::{
-    bent, by_own_light, colourless, copied, extrapolated, flickers, little_left, misstated,
-    no_light, roughly, rounded, shared, unsaid,
+    bent, by_own_light, colourless, copied, cut_off, extrapolated, flickers, little_left,
+    misstated, no_light, roughly, rounded, shared, unsaid,
 };
-use crate::num::digits::figure;
 use crate::scene::{Scene, SceneError};
 
 /// Variance of the entries' variances over their squares above which no standard error is stated:
@@ -162,13 +161,8 @@ pub fn import(
     {
         warnings.push(format!("{file} says that its values are those of light to the power 1/{gamma:.2} (its sRGB or gAMA chunk), and they are taken for linear: give `gamma` or `response`; `gamma = 1` where they are the camera's own"));
     }
-    if columns.zeros > 0.0 {
-        let all = columns.photographs * shots.size[0] * shots.size[1];
-        warnings.push(format!(
-            "{} % of the stored values are 0: what would be below is cut off, so that dark pixels are too bright on average; raise the camera's offset",
-            figure(100.0 * columns.zeros / all as f64, 2)
-        ));
-    }
+    let all = columns.photographs * shots.size[0] * shots.size[1];
+    warnings.extend(cut_off(columns.zeros / all as f64, shots.dark_zeros()));
     warnings.extend(by_own_light(columns.by_own_light));
     warnings.extend(colourless(&shots.grey));
     let table = shots.response.as_ref();

@@ -111,6 +111,16 @@ impl<'a> Shots<'a> {
         Ok(shots)
     }
 
+    /// Share of the stored values of dark frames, those of flat fields too, that are 0; of none 0.
+    pub(super) fn dark_zeros(&self) -> f64 {
+        let of_flat = self.flat.iter().filter_map(|(_, dark)| dark.as_ref());
+        let all = self.darks.iter().map(|(_, dark)| dark).chain(of_flat);
+        let (zeros, values) = all.fold((0, 0), |(zeros, values), dark| {
+            (zeros + dark.zeros, values + dark.frames * dark.light.len())
+        });
+        zeros as f64 / values.max(1) as f64
+    }
+
     /// One channel of a photograph as light.
     fn plane(
         &self,
@@ -138,6 +148,17 @@ impl<'a> Shots<'a> {
                 Response::gamma(gamma, full_scale)?
             }
         };
+        if let (Some(saturation), Some(full)) = (self.set.saturation, full_scale)
+            && saturation > full
+        {
+            return Err(refused(
+                format!(
+                    "saturation = {saturation} is above the largest value of {name}, {full}, so that no pixel would be \
+                     taken for saturated"
+                ),
+                format!("leave `saturation` out, or give at most {full}"),
+            ));
+        }
         let saturation = self.set.saturation.or(full_scale).unwrap_or(f64::INFINITY);
         linearised(name, samples, chosen, &response, saturation)
     }

@@ -81,6 +81,30 @@ pub(super) fn shared(times: f64) -> Option<String> {
     })
 }
 
+/// That these shares of the stored values of photographs and of dark frames are 0.
+pub(super) fn cut_off(photographs: f64, darks: f64) -> Vec<String> {
+    let of = [
+        (
+            photographs,
+            "stored values",
+            "dark pixels are too bright on average",
+        ),
+        (
+            darks,
+            "dark frames' stored values",
+            "the dark frames are too bright on average and every entry too dark, which no standard error holds",
+        ),
+    ];
+    let told = of.into_iter().filter(|(share, ..)| *share > 0.0);
+    let words = |(share, which, so): (f64, &str, &str)| {
+        format!(
+            "{} % of the {which} are 0: what would be below is cut off, so that {so}; raise the camera's offset",
+            figure(100.0 * share, 2)
+        )
+    };
+    told.map(words).collect()
+}
+
 /// That dark frames or flat fields are grey, of photographs in colour.
 pub(super) fn colourless(names: &[String]) -> Option<String> {
     let first = names.first()?;

@@ -29,7 +29,8 @@ use crate::num::statistics::{chi_square_quantile, sidak_threshold};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BandKind {
     /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal
-    /// noise of the stated standard errors.
+    /// noise of the stated standard errors. With a scale that is known roughly as many deviations
+    /// to both sides of what ρ̂ would be of ρ, which is no symmetric interval (Fieller 1954).
     Gaussian,
     /// The probability of ρ_j given the photographs and the method's assumption, as much beyond
     /// either limit: covers as often as it says **on average over pictures as the assumption
@@ -121,6 +122,36 @@ pub(super) fn gaussian(estimate: &DVector<f64>, sigma: &DVector<f64>, confidence
     }
 }
 
+/// The same of (1 + ε) ρ, ε ~ N(0, S²), the errors `sigma` holding S about the estimate: with σ² =
+/// `sigma`² − S² ρ̂² the ρ that
+///
+/// > (ρ̂ − ρ)² ≤ z² (σ² + S² ρ²),   ρ = (ρ̂ ± z √(S² ρ̂² + (1 − z² S²) σ²))/(1 − z² S²),
+///
+/// or why there are none: with z S ≥ 1 light of any size is as little as a factor near 0 may leave.
+pub(super) fn scaled(
+    (estimate, sigma): (&DVector<f64>, &DVector<f64>),
+    known_to: f64,
+    confidence: f64,
+) -> Result<Bands, &'static str> {
+    let z = deviate(confidence);
+    let left = 1.0 - (z * known_to).powi(2);
+    if left <= 0.0 {
+        return Err(OPEN);
+    }
+    let pairs = estimate.iter().zip(sigma.iter());
+    let ends = |(x, s): (&f64, &f64)| {
+        let of_scale = (known_to * x).powi(2);
+        let own = (s * s - of_scale).max(0.0);
+        let room = z * (of_scale + left * own).sqrt();
+        [(x - room) / left, (x + room) / left]
+    };
+    Ok(Bands {
+        confidence,
+        intervals: pairs.map(ends).collect(),
+        kind: BandKind::Gaussian,
+    })
+}
+
 /// What [`simultaneous`] needs: residuals in standard deviations.
 pub(super) fn simultaneous_allowed<'a>(
     method: Method,
@@ -143,6 +174,9 @@ const STOPPED: &str = "has no bands: it was stopped before they were found";
 /// Why an estimate between bounds has none that is known up to a factor.
 pub(super) const UNSCALED: &str = "has no bands with a free scale: the picture is relative to its brightest \
                         element, whose own error they would leave out";
+/// Why an estimate whose scale is known too roughly has none.
+const OPEN: &str = "has no bands: of a scale known so roughly there is no upper end at this confidence; \
+                    measure the scale, or ask for bands of less confidence";
 /// Why a biased estimate has none.
 pub(super) const BIASED: &str = "has no bands: regularisation, dropped directions or a free scale bias the picture \
                                  by an amount that the photographs do not tell";

@@ -234,10 +234,16 @@ impl Recovered {
         let error = error.ok_or(bands::without_noise(self.method))?;
         let elements = self.reflectance.len() as f64;
         let whole = self.effective_rank > elements * (1.0 - 1e-12);
-        if whole && !self.has_free_scale() {
-            self.bands = Some(bands::gaussian(&self.reflectance, error, confidence));
-        } else {
-            self.no_bands = Some(bands::BIASED);
+        let gains = self.nuisance.as_ref().and_then(|n| n.gains.as_ref());
+        let scale = gains.and_then(|gains| gains.whole.as_ref());
+        let found = match scale {
+            _ if !whole || self.has_free_scale() => Err(bands::BIASED),
+            Some(scale) => bands::scaled((&self.reflectance, error), scale.known_to, confidence),
+            None => Ok(bands::gaussian(&self.reflectance, error, confidence)),
+        };
+        match found {
+            Ok(found) => self.bands = Some(found),
+            Err(why) => self.no_bands = Some(why),
         }
         Ok(())
     }

@@ -301,6 +301,25 @@ fn repeats_tell_the_noise() {
     let error = account["photon_transfer"]["read_variance_error"].as_f64();
     assert!((read - 16.0).abs() < 4.0 * error.unwrap(), "{account}");
     assert!(error.unwrap() < 1.2 * 16.0 * (2.0f64 / 1536.0).sqrt());
+    assert!(!told.stderr.contains("the dark frames are too bright"));
+    // Of a level of one read noise a sixth is cut off at 0.
+    for k in 0..2 {
+        let dark: Vec<u16> = (0..48 * 32)
+            .map(|_| (4.0 + 4.0 * normal()).round().max(0.0) as u16)
+            .collect();
+        w.write(
+            &format!("in/cut{k}.png"),
+            grey16_png([48, 32], &dark).unwrap(),
+        );
+    }
+    let cut = command.replace("in/z*.png -o dark", "in/cut*.png -o cut");
+    let words = w.phicam(&cut).exits(0).stderr;
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("% of the dark frames' stored values are 0")
+            && words.contains("every entry too dark"),
+        "{words}"
+    );
     let told = w.phicam(&format!("{command} --replace")).exits(0);
     assert!(told.stdout.contains("read noise 4.") || told.stdout.contains("read noise 3.9"));
     assert!(told.stdout.contains(" ± 0.07"), "{}", told.stdout);
@@ -597,6 +616,14 @@ fn numbers_without_meaning_are_refused_or_told() {
     import(
         &format!("{frames}dark = \"in/input_3.png\"\n"),
         &["in/input_3.png", "dark frame", "once"],
+    );
+    import(
+        &format!("{frames}saturation = 65536\n"),
+        &["saturation = 65536", "65535", "leave `saturation` out"],
+    );
+    import(
+        &format!("{frames}saturation = 0\n"),
+        &["saturation = 0 has no meaning", "positive"],
     );
     let frame =
         |k: usize, spot: usize| format!("[[frame]]\nfile = \"in/input_{k}.png\"\nspot = {spot}\n");

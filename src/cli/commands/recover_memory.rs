@@ -212,16 +212,10 @@ impl Strips<'_> {
             }
         }
         Ok(Judged {
-            left_over: None,
             fit: residuals.fit(found.freedom_used(), self.certainty),
-            best: None,
-            none_possible: None,
-            determined: None,
-            unseen: Vec::new(),
             certainty: Some(self.certainty),
-            moved: None,
-            against: None,
             sent_on: self.model.sent_on.clone(),
+            ..Judged::default()
         })
     }
 

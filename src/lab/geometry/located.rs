@@ -226,6 +226,7 @@ impl LocatedPlan {
                 .hidden()
                 .next()
                 .map_or([0.0; 3], |(_, s)| s.shape.at([0.5; 2]).position.to_array()),
+            hidden: there.hidden().map(|(_, s)| s.name.clone()).collect(),
             curve: curve.iter().map(likelihood).collect(),
             elsewhere: elsewhere.map(|at| likelihood(&at)).collect(),
             log_likelihood,

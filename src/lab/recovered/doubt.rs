@@ -13,7 +13,7 @@ use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
     DETERMINED, HALF, between_neighbours, by_entries, few_replicates, integrated, overstated,
-    shared, too_bright, undetermined, unseen, with_light,
+    shared, too_bright, undetermined, unseen, untested, with_light,
 };
 pub(in crate::lab) use errors::{alike_untold, uneven};
 use misfit::{misfit, none_possible, outlier};
@@ -43,6 +43,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         shared(judged),
         between_neighbours(judged),
         with_light(judged),
+        untested(judged),
         few_replicates(found, judged),
         by_entries(judged),
         integrated(found, judged),

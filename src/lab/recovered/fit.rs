@@ -52,6 +52,9 @@ const MOST_ELEMENTS: usize = 1024;
 /// Elements up to which what the photographs determine is computed.
 const MOST_DECOMPOSED: usize = 2048;
 
+/// Share of the brightest entry's light below which an entry has none.
+const LIT: f64 = 1e-9;
+
 /// How well what was recovered explains the photographs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
@@ -161,6 +164,19 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
     })
 }
 
+/// Entries that count and that the surface can light, whose standard error is 0.
+fn untested(problem: &Problem<'_>, stderr: &Matrix) -> usize {
+    if stderr.iter().all(|s| *s > 0.0) {
+        return 0;
+    }
+    let white = DVector::from_element(problem.elements(), 1.0);
+    let light = problem.counted(problem.light(&white));
+    let least = LIT * light.amax();
+    let both = light.iter().zip(stderr);
+    both.filter(|(light, stderr)| **light > least && **stderr <= 0.0)
+        .count()
+}
+
 /// Another picture that explains the same photographs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rival {
@@ -190,6 +206,9 @@ pub struct Judged {
     pub determined: Option<Determined>,
     /// Elements of which they say nothing, in order; none where that is not known.
     pub unseen: Vec<usize>,
+    /// Entries that count and that the surface can light, whose standard error is 0: they weigh on
+    /// the picture, and no test sees them.
+    pub untested: usize,
     /// What is known of the errors of the photographs; none where they are not.
     pub certainty: Option<Certainty>,
     /// How far the integrals of the model may move each element; none where that is not known.
@@ -236,6 +255,7 @@ impl Judged {
                 .then(|| unseen(problem).ok())
                 .flatten()
                 .unwrap_or_default(),
+            untested: known.map_or(0, |known| untested(problem, known.stderr)),
             certainty: noise.map(|known| known.certainty),
             moved: None,
             against: None,

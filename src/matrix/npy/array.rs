@@ -3,6 +3,7 @@
 use super::super::array::{
     Array, ArrayError, MOST_ENTRIES, Number, damaged, from_fortran, unsupported,
 };
+use super::error::conversion;
 use super::header::{Header, Plain};
 use super::one_line;
 
@@ -20,8 +21,9 @@ pub fn read_array(name: &str, bytes: &[u8]) -> Result<Array, ArrayError> {
         .map_err(|reason| damaged(name, one_line(&reason)))?;
     let (number, big) = header.plain().and_then(number).ok_or_else(|| {
         let reason = format!(
-            "it holds {}, not plain integers or floating-point numbers; convert it with a.astype('<f8') before numpy.save",
-            one_line(&header.descr)
+            "it holds {}, not plain integers or floating-point numbers; {} before numpy.save",
+            one_line(&header.descr),
+            conversion(&header.descr)
         );
         unsupported(name, reason)
     })?;

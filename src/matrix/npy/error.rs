@@ -19,7 +19,7 @@ pub enum NpyError {
         reason: String,
     },
     /// Numbers of another type than f64 or f32.
-    #[error("{} holds numbers of type {dtype}, not f64 or f32; convert it with a.astype('<f8') before numpy.save", path.display())]
+    #[error("{} holds numbers of type {dtype}, not f64 or f32; {} before numpy.save", path.display(), conversion(dtype))]
     Type {
         /// The file.
         path: PathBuf,
@@ -56,4 +56,13 @@ pub enum NpyError {
         /// The value.
         value: f64,
     },
+}
+
+/// How an array of this type becomes one of plain numbers.
+pub(super) fn conversion(dtype: &str) -> &'static str {
+    if dtype.contains('c') {
+        "of complex numbers save the part that is meant, such as a.real,"
+    } else {
+        "convert it with a.astype('<f8')"
+    }
 }

@@ -46,7 +46,7 @@ impl Set {
         let numbers = [
             ("exposure", self.exposure, 0.0),
             ("full_scale", self.full_scale, 0.0),
-            ("saturation", self.saturation, f64::NEG_INFINITY),
+            ("saturation", self.saturation, 0.0),
             ("watts", self.watts, 0.0),
             ("halo", self.halo, 0.0),
         ];

@@ -225,3 +225,39 @@ fn a_picture_that_was_stopped_is_kept_without_its_bands() {
     let refused = recover(Method::Joint, &problem.under(control), &options);
     assert!(matches!(refused, Err(RecoveryError::Stopped(_))));
 }
+
+/// Photographs almost without noise of light that is f times what it is said to be, f = 1 ± S: the
+/// truth is in the bands if and only if |f − 1| ≤ 1.96 S. With 1.96 S ≥ 1 nothing is.
+#[test]
+fn bands_of_a_roughly_known_scale_end_where_the_scale_does() {
+    let bench = Bench::new(6.0, 2, 8);
+    let truth = DVector::from_row_slice(&[0.2, 0.5, 0.7, 0.1]);
+    let exact = bench.phi(&truth);
+    let found = |known: f64, factor: f64| {
+        let phi = &exact * factor;
+        let stderr = &exact * 1e-6;
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let nuisance = Nuisance {
+            scale_error: Some(known),
+            ..Nuisance::default()
+        };
+        let options = Options {
+            bands: Some(0.95),
+            ..Options::default()
+        };
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        recover(Method::JointUnbounded, &problem, &options).unwrap()
+    };
+    for known in [0.05, 0.3, 0.5] {
+        for (deviations, covered) in [(-1.97, 0), (-1.95, 4), (0.0, 4), (1.95, 4), (1.97, 0)] {
+            let bands = found(known, 1.0 + deviations * known).bands.unwrap();
+            assert_eq!(
+                bands.covered(truth.as_slice()),
+                covered,
+                "{known} {deviations}"
+            );
+        }
+    }
+    let none = found(0.6, 1.0);
+    assert_eq!((none.bands, none.no_bands), (None, Some(OPEN)));
+}

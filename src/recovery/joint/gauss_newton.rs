@@ -17,10 +17,12 @@
 //! are the likeliest whatever x ([`Linear`]): fitted together, the picture would be the least and
 //! the factors the largest.
 //! Over ε it integrates itself ([`gaussian_process`](super::process::gaussian_process)): x is the
-//! light (1 + ε) ρ here.
+//! light (1 + ε) ρ here. So do patterns of two given values
+//! ([`factor`](super::patterns::factor)).
 //!
-//! Patterns of two values are weighed against each other with the factors linear about the best of
-//! them: of another one ε multiplies this one's light, an error of the second order.
+//! Patterns of two values that are not given are weighed against each other with the factors linear
+//! about the best of them, and factors of frames always: of another one ε multiplies this one's
+//! light, an error of the second order.
 //!
 //! Evidence: ∫ p(Φ|x, ε) p(ε) dε by Laplace's method is that of the linear problem times Π (1 +
 //! σ²⟨m, m⟩)^(−½), m in units of the noise and without what other terms take, so that factors that
@@ -50,7 +52,8 @@ pub(in crate::recovery) fn recover(
     options: &Options,
     by: impl Fn(Method, &Problem<'_>, &Options) -> Result<Recovered, RecoveryError>,
 ) -> Result<Recovered, RecoveryError> {
-    let averages = method == Method::JointGp;
+    let has_size = method == Method::JointGp;
+    let averages = has_size || method == Method::JointTwoValued && options.levels.is_some();
     let whole = problem.nuisance.scale_error;
     let [averaged, fitted] = if averages {
         [whole, None]
@@ -80,7 +83,7 @@ pub(in crate::recovery) fn recover(
     let (start, whole) = if by_ratio {
         let found = by(method, &base.with_free_scale(), &quick)?;
         let scale = found.seen().amax();
-        let light = options.levels.map_or(scale.min(1.0), |[_, light]| light);
+        let light = scale.min(1.0);
         (found, scale / light - 1.0)
     } else {
         (bounded::recover(Method::Nnls, &base, &quick)?, 0.0)
@@ -100,7 +103,7 @@ pub(in crate::recovery) fn recover(
             let linear = Linear::about(&with_factors, at);
             let found = linear.about_one(by(method, &linear.problem(&base), &quick)?);
             let noise = noise(&found);
-            if averages {
+            if has_size {
                 at.directions = found.effective_rank;
             }
             settled = (noise / at.noise - 1.0).abs() < SETTLED;
@@ -138,6 +141,7 @@ pub(in crate::recovery) fn recover(
         let known = known.about(problem.phi, d, &Soft::NONE);
         let quick = Options {
             spreads: options.spreads,
+            probabilities: options.probabilities && problem.nuisance.scale_error.is_some(),
             ..quick
         };
         by(method, &known, &quick)

@@ -69,15 +69,34 @@ impl Located {
                 figure(fit.p, 1)
             )
         });
+        let (which, together) = self.as_one_body();
         format!(
-            "{refuted}{}: {} {error} from where the scene has it; the middle of the hidden surface \
-             is then at ({x}, {y}, {z}).{}{}",
+            "{refuted}{}: {} {error} from where the scene has it; the middle of {which} is then at \
+             ({x}, {y}, {z}).{together}{}{}",
             self.what,
             figure(size, 3),
             self.or_elsewhere(),
             self.moved()
                 .map_or(String::new(), |other| format!(" {}", self.as_large(other)))
         )
+    }
+
+    /// The surface whose middle is told, and that others are moved with it.
+    fn as_one_body(&self) -> (String, String) {
+        match &self.hidden[..] {
+            [first, others @ ..] if !others.is_empty() => {
+                let each: Vec<String> = self.hidden.iter().map(|s| format!("{s}.normal")).collect();
+                let together = format!(
+                    " All {} hidden surfaces are moved, as one body, in the directions of `{first}`: where one of \
+                     them alone is elsewhere, place and error are wrong, and what is left over need not tell it. \
+                     `phicam calibrate --free {}` moves each alone.",
+                    self.hidden.len(),
+                    each.join(",")
+                );
+                (format!("`{first}`"), together)
+            }
+            _ => ("the hidden surface".to_owned(), String::new()),
+        }
     }
 
     /// Another size of the surface, where with it the place is another too.

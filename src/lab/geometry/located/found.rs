@@ -82,6 +82,8 @@ pub struct Located {
     pub by_frames: Option<f64>,
     /// The middle of the first hidden surface at the likeliest size tried.
     pub middle: [f64; 3],
+    /// Names of the hidden surfaces, which move as one body.
+    pub hidden: Vec<String>,
     /// Sizes tried, growing.
     pub curve: Vec<Likelihood>,
     /// Peaks elsewhere that the photographs do not tell from the likeliest, at 1 %.

@@ -16,8 +16,13 @@ pub(in crate::lab) fn words(found: &Recovered, explains: bool) -> String {
         )
     });
     let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
+    let gains = found.nuisance.as_ref().and_then(|n| n.gains.as_ref());
+    let scale = match gains.and_then(|gains| gains.whole.as_ref()) {
+        Some(_) => "the scale is as nearly right as stated",
+        None => "the scale is right",
+    };
     let patterns = match &found.patterns {
-        Some(known) if explains => patterns(known),
+        Some(known) if explains => patterns(known, scale),
         Some(_) => "; without a probability, since it does not explain the photographs".to_owned(),
         None => String::new(),
     };
@@ -45,8 +50,9 @@ pub(in crate::lab) fn words(found: &Recovered, explains: bool) -> String {
         + &estimated
 }
 
-/// What is known of a pattern of two levels, first by what its picture goes by.
-fn patterns(of: &Patterns) -> String {
+/// What is known of a pattern of two levels, first by what its picture goes by, where the `scale`
+/// is as it is said to be.
+fn patterns(of: &Patterns, scale: &str) -> String {
     let assumed = of.assumed();
     let known = assumed.sum.converged();
     // Levels that were given are taken for the surface's.
@@ -66,7 +72,7 @@ fn patterns(of: &Patterns) -> String {
         "too few draws tell how likely this pattern is".to_owned()
     };
     format!(
-        "{exact}, if the scale is right, and {beforehand}, {said} ({})",
+        "{exact}, if {scale}, and {beforehand}, {said} ({})",
         how(assumed.sum)
     ) + &otherwise(of)
 }

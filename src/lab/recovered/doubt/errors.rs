@@ -30,6 +30,20 @@ pub(super) fn shared(judged: &Judged) -> Option<String> {
     ))
 }
 
+/// Entries that no test sees.
+pub(super) fn untested(judged: &Judged) -> Option<String> {
+    let fit = judged.fit.as_ref().filter(|fit| fit.fits)?;
+    let count = judged.untested;
+    (count > 0).then(|| {
+        format!(
+            "{count} of {} entries that the surface lights have a standard error of 0: they count for the picture as \
+             if they were known, and no test sees whether they are right. Leave out those that hold no measurement \
+             (--left-out), or give their errors",
+            fit.entries + count
+        )
+    })
+}
+
 /// Errors of the picture that take those of the photographs for known, where they are not.
 pub(super) fn few_replicates(found: &Recovered, judged: &Judged) -> Option<String> {
     let known = judged.certainty?;

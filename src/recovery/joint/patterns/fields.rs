@@ -127,6 +127,7 @@ impl Fields {
         let own = PatternLikelihood {
             alike: self.prior.as_ref(),
             control: likelihood.control,
+            scale_error: likelihood.scale_error,
             ..PatternLikelihood::new(&r, likelihood.d, likelihood.given)
         };
         let summed = if enumerated::can(&own) {

@@ -3,6 +3,7 @@
 mod apart;
 mod branch;
 mod enumerated;
+pub(super) mod factor;
 pub(super) mod fields;
 mod levels;
 pub(super) mod neighbours;
@@ -13,5 +14,6 @@ mod pattern_search;
 mod pattern_sums;
 mod sampled;
 mod sampler;
+mod scaled;
 mod spread;
 pub(in crate::recovery) mod two_valued;

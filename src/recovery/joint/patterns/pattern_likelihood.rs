@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::factor::Factor;
 use super::levels::{LevelFit, possible};
 use super::neighbours::AlikePrior;
 use crate::num::control::Control;
@@ -14,6 +15,8 @@ pub(super) struct PatternLikelihood<'a> {
     /// The light of elements that are all 1.
     pub(super) all: DVector<f64>,
     pub(super) given: Option<[f64; 2]>,
+    /// To what a common factor of the light of given levels is known; else it is 1.
+    pub(super) scale_error: Option<f64>,
     /// What neighbours say beforehand; else every pattern is as likely.
     pub(super) alike: Option<&'a AlikePrior>,
     pub(super) control: Control<'a>,
@@ -27,6 +30,7 @@ impl<'a> PatternLikelihood<'a> {
             d,
             all,
             given,
+            scale_error: None,
             alike: None,
             control: Control::none(),
         }
@@ -42,13 +46,13 @@ impl<'a> PatternLikelihood<'a> {
     }
 }
 
-/// A pattern's weight, exp(−½ χ²) over all its levels, times what neighbours say beforehand.
+/// A pattern's weight, exp(−½ χ²) over all its levels and factors, times what neighbours say beforehand.
 pub(super) struct Weighed {
     /// ln of it.
     pub(super) log: f64,
     /// Means of the dark and the light level under it, and of their squares.
     pub(super) levels: [[f64; 2]; 2],
-    /// χ² of its best levels; infinite where these cannot be.
+    /// χ² of its best levels or factor; infinite where these cannot be.
     pub(super) chi2: f64,
 }
 
@@ -93,9 +97,19 @@ impl PatternLikelihood<'_> {
         least: f64,
     ) -> Option<Weighed> {
         if let Some([dark, light]) = self.given {
-            let chi2 = (self.d - &self.all * dark - lit * (light - dark)).norm_squared();
+            let m = &self.all * dark + lit * (light - dark);
+            let (log, chi2) = match self.scale_error {
+                Some(sigma) => {
+                    let factor = Factor::new(&m, self.d, sigma);
+                    (factor.log, factor.chi2)
+                }
+                None => {
+                    let chi2 = (self.d - m).norm_squared();
+                    (-0.5 * chi2, chi2)
+                }
+            };
             return Some(Weighed {
-                log: -0.5 * chi2,
+                log,
                 levels: [dark, light].map(|x| [x, x * x]),
                 chi2,
             });

@@ -22,6 +22,7 @@ use super::pattern_lattice::{Dark, PatternLattice};
 use super::pattern_likelihood::{PatternLikelihood, Weighed};
 use super::pattern_sums::{Moments, Summed, WeighedPatterns};
 use super::sampler::{List, Met, Sampler, Side, counts, effective};
+use super::scaled::Scaled;
 use crate::recovery::{RecoveryError, Sum};
 
 /// Of the weight that lets a third of all draws be patterns, those of the two lattices.
@@ -45,10 +46,26 @@ pub(super) fn sample(
     known: &[Vec<bool>],
     draws: usize,
 ) -> Result<Option<Summed>, RecoveryError> {
+    let quadrature = rule();
+    let mut sampler = Sampler {
+        likelihood,
+        list: List::new(),
+        quadrature: &quadrature,
+    };
+    let n = likelihood.r.ncols();
+    sampler.list(known);
+    sampler.list(&[vec![false; n], vec![true; n]]);
+    // A factor of the light is linear about the likeliest pattern; the weights hold all of it.
+    let scaled = Scaled::of(likelihood).zip(sampler.likeliest());
+    let linear = scaled.map(|(scaled, light)| scaled.about(light));
+    let (r, d) = match &linear {
+        Some((r, d)) => (r, d),
+        None => (likelihood.r, likelihood.d),
+    };
     let pairs = likelihood.alike.map_or(&[][..], |prior| &prior.pairs);
     let lattice = PatternLattice {
-        r: likelihood.r,
-        d: likelihood.d,
+        r,
+        d,
         dark: likelihood
             .given
             .map_or(Dark::Free, |[dark, _]| Dark::Given(dark)),
@@ -80,15 +97,6 @@ pub(super) fn sample(
         };
         Ok::<_, RecoveryError>(side(0)?.zip(side(1)?).map(|(a, b)| [a, b]))
     };
-    let quadrature = rule();
-    let mut sampler = Sampler {
-        likelihood,
-        list: List::new(),
-        quadrature: &quadrature,
-    };
-    let n = likelihood.r.ncols();
-    sampler.list(known);
-    sampler.list(&[vec![false; n], vec![true; n]]);
     let Some(coarse) = both(&contrasts, share, ALL, sampler.degree())? else {
         return Ok(None);
     };

@@ -116,6 +116,13 @@ impl Sampler<'_> {
             .map_or(0.0, |prior| prior.degree(listed))
     }
 
+    /// The pattern of the largest weight that is listed.
+    pub(super) fn likeliest(&self) -> Option<&Vec<bool>> {
+        let order =
+            |a: &(&Vec<bool>, &Weighed), b: &(&Vec<bool>, &Weighed)| a.1.log.total_cmp(&b.1.log);
+        self.list.iter().max_by(order).map(|(light, _)| light)
+    }
+
     /// ln of the largest weight that is listed.
     fn top(&self) -> f64 {
         let logs = self.list.values().map(|weighed| weighed.log);

@@ -22,6 +22,7 @@ use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
 use super::pattern_sums::Summed;
+use super::scaled::Scaled;
 use super::{enumerated, levels, neighbours, pattern_lattice, sampled, spread};
 use crate::recovery::joint::coordinates::Coordinates;
 use crate::recovery::joint::operator::scale;
@@ -142,6 +143,7 @@ pub(in crate::recovery) fn recover(
     let coordinates = Coordinates::new(method, problem, options, unit, 1.0)?;
     let (mut r, d) = coordinates.whitened();
     r *= unit;
+    let n = problem.c.ncols();
     let given = options.levels.filter(|_| !free);
     let levels = match (options.levels, free) {
         (Some(levels), false) => Levels::Given(levels),
@@ -153,7 +155,17 @@ pub(in crate::recovery) fn recover(
     let whole = problem.soft.and_then(|soft| soft.whole.as_ref());
     let contrast = whole.filter(|_| options.levels.is_none());
     let contrast = contrast.map(|(z, _)| (z.max() - z.min()) / unit);
-    let search = Search::new(&r, &d, levels)
+    let likelihood = PatternLikelihood {
+        control: problem.control,
+        scale_error: problem.nuisance.scale_error,
+        ..PatternLikelihood::new(&r, &d, given)
+    };
+    let scaled = Scaled::of(&likelihood);
+    let near = scaled.map(|scaled| scaled.search()).transpose()?;
+    let about = |light: &[bool]| scaled.map(|scaled| scaled.about(light));
+    let linear = near.as_deref().and_then(about);
+    let (own, seen) = linear.as_ref().map_or((&r, &d), |(r, d)| (r, d));
+    let search = Search::new(own, seen, levels)
         .about(contrast)
         .under(problem.control);
     let Found {
@@ -162,15 +174,13 @@ pub(in crate::recovery) fn recover(
         mut changes,
         iterations,
     } = search.best()?;
+    if let Some(light) = near {
+        best = search.fit(light);
+    }
     let grids = problem.grids.unwrap_or(&[]);
-    // A scale that is free has no measure of what is likely.
-    let n = problem.c.ncols();
-    let likelihood = PatternLikelihood {
-        control: problem.control,
-        ..PatternLikelihood::new(&r, &d, given)
-    };
     let mut known = Vec::new();
     let even = [Fields::even(n)];
+    // A scale that is free has no measure of what is likely.
     let summed = if free || n > MOST_SAMPLED || !options.probabilities {
         None
     } else {
@@ -182,7 +192,10 @@ pub(in crate::recovery) fn recover(
         }
         fields::sum(&likelihood, &even, &known, (draws(n), None))?
     };
-    if let Some(summed) = &summed {
+    if let (Some(summed), Some(_)) = (&summed, scaled) {
+        let likeliest = summed.patterns.likeliest().map(|of| of.0.clone());
+        best = search.fit(likeliest.unwrap_or(best.light));
+    } else if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
         if search.can(&found) && found.misfit < best.misfit {
             best = found;
@@ -234,8 +247,16 @@ pub(in crate::recovery) fn recover(
         )?),
         _ => None,
     };
-    let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
     let converged = assumed.filter(|exact| exact.sum.converged());
+    let told = converged.map(|exact| &exact.patterns);
+    let whole = scaled.map(|scaled| scaled.deviation(&best.light, told));
+    let factor = whole.as_ref().map_or(1.0, |of| 1.0 + of.size[0]);
+    let mut recovered = coordinates.finish(method, problem, options, &shown * (unit * factor))?;
+    if whole.is_some() {
+        recovered.reflectance = shown.clone();
+        let gains = &mut recovered.nuisance.get_or_insert_default().gains;
+        gains.get_or_insert_default().whole = whole;
+    }
     recovered.standard_error = converged.map(|exact| match &spread {
         Some(spread) => spread.error.clone(),
         None => exact.patterns.moments.square_about(&shown).map(f64::sqrt),

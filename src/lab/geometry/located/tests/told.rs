@@ -4,7 +4,8 @@ use super::*;
 use crate::lab::comparison::misplaced;
 use crate::lab::finding::Describe;
 use crate::lab::uncertainty::certainty::Errors;
-use crate::scene::file::{Layout, SpotsTable};
+use crate::scene::Role;
+use crate::scene::file::{Layout, SpotsTable, SurfaceTable};
 
 /// A shift within the plane of a flat surface moves its picture: what photographs do not tell from
 /// another picture is refused.
@@ -247,5 +248,45 @@ fn what_hangs_together_is_told_without_a_stated_noise() {
         let told = notes.contains("hangs together from pixel to pixel");
         assert_eq!(told, is_told, "{:?} {notes}", found.neighbours);
         assert_eq!(found.neighbours.is_some(), is_told);
+    }
+}
+
+/// Of two hidden surfaces it is said that both are moved, of which one the middle is told, and how
+/// each alone is looked for; of one nothing.
+#[test]
+fn surfaces_that_are_moved_together_are_named() {
+    let mut file = SceneFile::default();
+    file.laser.as_mut().unwrap().spots.per_side = Some(3);
+    file.camera.pixels = [8, 8];
+    let first = file
+        .surface
+        .iter()
+        .find(|s| s.role == Role::Hidden)
+        .unwrap()
+        .clone();
+    let (phi, stderr) = photographed(&Scene::new(&file, None).unwrap(), 1e-2, 7);
+    let plan = LocatedPlan {
+        elements: Some([2; 2]),
+        ..by_centres([-1.0, 1.0], 0)
+    };
+    let told = |file: &SceneFile| {
+        let scene = Scene::new(file, None).unwrap();
+        located(&scene, &phi, &stderr, plan).describe().sentence
+    };
+    assert!(!told(&file).contains("hidden surfaces"));
+    let mut second = SurfaceTable {
+        name: "beside".to_owned(),
+        ..first.clone()
+    };
+    let corner = &mut second.rectangle.as_mut().unwrap().corner;
+    (corner[0], corner[2]) = (corner[0] + 3.0, corner[2] + 1.0);
+    file.surface.push(second);
+    let words = told(&file);
+    for due in [
+        format!("the middle of `{}` is then at", first.name),
+        "All 2 hidden surfaces are moved, as one body".to_owned(),
+        format!("--free {}.normal,beside.normal", first.name),
+    ] {
+        assert!(words.contains(&due), "{words}");
     }
 }

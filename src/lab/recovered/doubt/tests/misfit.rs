@@ -83,6 +83,29 @@ fn a_wrong_entry_without_an_error_is_among_the_cures() {
     }
 }
 
+/// Right photographs with an entry whose standard error is given as 0: the picture fits, and it is
+/// said that no test sees that entry.
+#[test]
+fn entries_that_no_test_sees_are_counted() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+    let mut right = Photographs::relative(&model.phi(), 1e-3, 1);
+    let told = |stderr: &Matrix| {
+        let found = by_every_method(&model, &right.phi, Some(stderr));
+        let joint = found
+            .into_iter()
+            .find(|(method, _)| *method == Method::Joint);
+        joint.unwrap().1.unwrap().warnings.join(" ")
+    };
+    assert!(!told(&right.stderr).contains("standard error of 0"));
+    let all = right.stderr.len();
+    right.stderr[(2, 3)] = 0.0;
+    let words = told(&right.stderr);
+    assert!(
+        words.contains(&format!("1 of {all} entries that the surface lights")),
+        "{words}"
+    );
+}
+
 /// Right photographs: nothing contradicts, and `joint` fits.
 #[test]
 fn right_photographs_are_not_warned_of() {
