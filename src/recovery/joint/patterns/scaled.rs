@@ -1,7 +1,7 @@
 //! Patterns of given levels where the light has a common factor that is known beforehand
-//! ([`super::factor`]): the search for the likeliest, and the problem linear in the factor about one,
-//! from which lattices draw. As in all else linear problems are right near their pattern alone: a
-//! dark one has little light for the factor to multiply.
+//! ([`super::factor`]): the search for the likeliest, and the problem linear in the factor about
+//! one, from which lattices draw. As all linear problems it is right near its pattern alone: a dark
+//! one has little light for the factor to multiply.
 
 use nalgebra::{DMatrix, DVector};
 
