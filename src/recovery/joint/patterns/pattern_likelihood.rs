@@ -46,7 +46,8 @@ impl<'a> PatternLikelihood<'a> {
     }
 }
 
-/// A pattern's weight, exp(−½ χ²) over all its levels and factors, times what neighbours say beforehand.
+/// A pattern's weight, exp(−½ χ²) over all its levels and factors, times what neighbours say
+/// beforehand.
 pub(super) struct Weighed {
     /// ln of it.
     pub(super) log: f64,
