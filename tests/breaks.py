@@ -3637,8 +3637,8 @@ BREAKS = [
     Break(
         "Dark frames that are cut off at 0 are told",
         "src/photographs/shots.rs",
-        "zeros as f64 / values.max(1) as f64",
-        "0.0 * zeros as f64 / values.max(1) as f64",
+        "zeros / values.max(1) as f64",
+        "0.0 * zeros / values.max(1) as f64",
         "cli",
         "importing::repeats_tell_the_noise",
         49,

@@ -115,10 +115,10 @@ impl<'a> Shots<'a> {
     pub(super) fn dark_zeros(&self) -> f64 {
         let of_flat = self.flat.iter().filter_map(|(_, dark)| dark.as_ref());
         let all = self.darks.iter().map(|(_, dark)| dark).chain(of_flat);
-        let (zeros, values) = all.fold((0, 0), |(zeros, values), dark| {
-            (zeros + dark.zeros, values + dark.frames * dark.light.len())
+        let (zeros, values) = all.fold((0.0, 0), |(zeros, values), dark| {
+            (zeros + dark.cut_off(), values + dark.frames * dark.light.len())
         });
-        zeros as f64 / values.max(1) as f64
+        zeros / values.max(1) as f64
     }
 
     /// One channel of a photograph as light.
