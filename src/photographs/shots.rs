@@ -116,7 +116,10 @@ impl<'a> Shots<'a> {
         let of_flat = self.flat.iter().filter_map(|(_, dark)| dark.as_ref());
         let all = self.darks.iter().map(|(_, dark)| dark).chain(of_flat);
         let (zeros, values) = all.fold((0.0, 0), |(zeros, values), dark| {
-            (zeros + dark.cut_off(), values + dark.frames * dark.light.len())
+            (
+                zeros + dark.cut_off(),
+                values + dark.frames * dark.light.len(),
+            )
         });
         zeros / values.max(1) as f64
     }
