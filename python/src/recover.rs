@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use numpy::PyArray2;
-use phicam::lab::{
-    Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_objects,
-};
+use phicam::lab::{Noise, RecoveredObject, by_trust, describe_recovery, recover_objects};
 use phicam::matrix::Matrix;
 use phicam::num::linalg::Tolerance;
 use phicam::recovery::{Method, Options, Rule, Setting, Uncertainty, WeightRule};
