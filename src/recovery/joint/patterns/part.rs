@@ -148,12 +148,10 @@ pub(super) fn draw<'a>(
     };
     let random = &mut Stream::new(Sampling::Pcg, key);
     let patterns = &summed.patterns;
-    let mut weights: Vec<(&Vec<bool>, &f64)> = patterns.weights.iter().collect();
-    weights.sort_unstable_by_key(|of| of.0);
     let step = patterns.moments.weight / DRAWN as f64;
     let mut next = random.uniform() * step;
     let mut drawn = Vec::with_capacity(DRAWN);
-    for (light, weight) in weights {
+    for (light, weight) in patterns.in_order() {
         next -= weight;
         while next < 0.0 {
             drawn.extend(levels(likelihood, light, random).map(|levels| (light, levels)));

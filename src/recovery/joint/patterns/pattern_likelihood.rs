@@ -44,6 +44,11 @@ impl<'a> PatternLikelihood<'a> {
         }
         sum
     }
+
+    /// The light of all elements, of these levels, by that of the light ones.
+    pub(super) fn light(&self, lit: &DVector<f64>, [dark, light]: [f64; 2]) -> DVector<f64> {
+        &self.all * dark + lit * (light - dark)
+    }
 }
 
 /// A pattern's weight, exp(−½ χ²) over all its levels and factors, times what neighbours say
@@ -98,7 +103,7 @@ impl PatternLikelihood<'_> {
         least: f64,
     ) -> Option<Weighed> {
         if let Some([dark, light]) = self.given {
-            let m = &self.all * dark + lit * (light - dark);
+            let m = self.light(lit, [dark, light]);
             let (log, chi2) = match self.scale_error {
                 Some(sigma) => {
                     let factor = Factor::new(&m, self.d, sigma);

@@ -31,6 +31,13 @@ impl WeighedPatterns {
         Some((light, self.share(light)))
     }
 
+    /// Patterns with their weights in an order of their own, so that sums have the same bits.
+    pub(super) fn in_order(&self) -> Vec<(&Vec<bool>, f64)> {
+        let mut each: Vec<(&Vec<bool>, f64)> = self.weights.iter().map(|(s, w)| (s, *w)).collect();
+        each.sort_unstable_by_key(|of| of.0);
+        each
+    }
+
     /// Of the likeliest patterns, which together have `share` of the weight, the one that is
     /// expected to have the most elements right: the largest Σ_j P(element j is what s_j says).
     pub(super) fn nearest(&self, share: f64) -> Option<&Vec<bool>> {

@@ -14,6 +14,16 @@ use crate::recovery::{Deviations, RecoveryError};
 /// Problems about a pattern that are searched at most for a likelier one.
 const MOST_STEPS: usize = 8;
 
+/// Where a search ended.
+pub(super) struct Near {
+    /// The likeliest pattern.
+    pub(super) light: Vec<bool>,
+    /// The problem linear about it.
+    pub(super) linear: (DMatrix<f64>, DVector<f64>),
+    /// What is found of that.
+    pub(super) found: Found,
+}
+
 /// The problem of given levels whose factor is known to `sigma`.
 #[derive(Clone, Copy)]
 pub(super) struct Scaled<'a> {
@@ -35,8 +45,8 @@ impl<'a> Scaled<'a> {
 
     /// R x of a pattern.
     fn light(&self, light: &[bool]) -> DVector<f64> {
-        let [dark, bright] = self.levels;
-        &self.likelihood.all * dark + self.likelihood.lit(light) * (bright - dark)
+        let of = self.likelihood;
+        of.light(&of.lit(light), self.levels)
     }
 
     fn factor(&self, light: &[bool]) -> Factor {
@@ -66,7 +76,7 @@ impl<'a> Scaled<'a> {
 
     /// The likeliest pattern that is found: from those of the best fits with any factor and without
     /// one, by searches linear about the likeliest before.
-    pub(super) fn search(&self) -> Result<Vec<bool>, RecoveryError> {
+    pub(super) fn search(&self) -> Result<Near, RecoveryError> {
         let of = self.likelihood;
         let best = |r: &DMatrix<f64>, d: &DVector<f64>, levels| -> Result<Found, RecoveryError> {
             Search::new(r, d, levels).under(of.control).best()
@@ -75,15 +85,21 @@ impl<'a> Scaled<'a> {
         let ratio = best(of.r, of.d, Levels::Ratio(self.levels))?.best.light;
         let own = best(of.r, of.d, Levels::Given(self.levels))?.best.light;
         let mut at = if log(&own) > log(&ratio) { own } else { ratio };
-        for _ in 0..MOST_STEPS {
-            let (r, d) = self.about(&at);
-            let next = best(&r, &d, Levels::Given(self.levels))?.best.light;
-            if log(&next) <= log(&at) {
-                break;
+        let mut steps = 0;
+        loop {
+            let linear = self.about(&at);
+            let found = best(&linear.0, &linear.1, Levels::Given(self.levels))?;
+            if steps == MOST_STEPS || log(&found.best.light) <= log(&at) {
+                let light = at;
+                return Ok(Near {
+                    light,
+                    linear,
+                    found,
+                });
             }
-            at = next;
+            at = found.best.light;
+            steps += 1;
         }
-        Ok(at)
     }
 
     /// ŝ − 1 of the pattern that is shown, with an error that other patterns are part of, if known.
@@ -95,11 +111,8 @@ impl<'a> Scaled<'a> {
         let own = self.factor(shown);
         let mut square = own.variance;
         if let Some(patterns) = patterns {
-            let mut each: Vec<(&Vec<bool>, &f64)> = patterns.weights.iter().collect();
-            // In an order of their own, so that the sum has the same bits.
-            each.sort_unstable_by_key(|of| of.0);
             let (mut sum, mut all) = (0.0, 0.0);
-            for (light, weight) in each {
+            for (light, weight) in patterns.in_order() {
                 let other = self.factor(light);
                 sum += weight * ((other.off - own.off).powi(2) + other.variance);
                 all += weight;

@@ -162,8 +162,9 @@ pub(in crate::recovery) fn recover(
     };
     let scaled = Scaled::of(&likelihood);
     let near = scaled.map(|scaled| scaled.search()).transpose()?;
-    let about = |light: &[bool]| scaled.map(|scaled| scaled.about(light));
-    let linear = near.as_deref().and_then(about);
+    let (near, linear) = near
+        .map(|near| ((near.light, near.found), near.linear))
+        .unzip();
     let (own, seen) = linear.as_ref().map_or((&r, &d), |(r, d)| (r, d));
     let search = Search::new(own, seen, levels)
         .about(contrast)
@@ -173,10 +174,13 @@ pub(in crate::recovery) fn recover(
         mut bound,
         mut changes,
         iterations,
-    } = search.best()?;
-    if let Some(light) = near {
-        best = search.fit(light);
-    }
+    } = match near {
+        Some((light, found)) => Found {
+            best: search.fit(light),
+            ..found
+        },
+        None => search.best()?,
+    };
     let grids = problem.grids.unwrap_or(&[]);
     let mut known = Vec::new();
     let even = [Fields::even(n)];
