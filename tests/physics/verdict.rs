@@ -325,7 +325,12 @@ fn another_picture_is_told_from_a_geometry() {
     let fitted = |light: &Matrix, seed: u64| {
         let found = tested(&scene, &traced(light, errors, seed), errors, 1e-3);
         let own = score(&found);
-        assert!(!found.agreement.agrees && own.untested.is_empty());
+        assert!(!found.agreement.agrees);
+        // Of photographs the size of spots that are taken for points stays open, and nothing else.
+        let [open] = own.untested.as_slice() else {
+            panic!("{:?}", own.untested);
+        };
+        assert!(open.contains("taken for points"), "{open}");
         let picture = own.picture.unwrap();
         assert!(picture.elements == 64 && picture.free <= 64);
         (picture, picture.is_missed && picture.misses.abs() < 3.9)
