@@ -20,10 +20,12 @@ pub trait Corner: Copy {
 impl Corner for DVec3 {
     type Plane = ();
 
+    #[inline]
     fn at(&self) -> DVec3 {
         *self
     }
 
+    #[inline]
     fn crossing(a: &Self, b: &Self, [h, k]: [f64; 2], _: &(DVec3, f64, ())) -> Self {
         *a + (*b - *a) * (h / (h - k))
     }

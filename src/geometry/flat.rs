@@ -45,11 +45,10 @@ impl Eight {
 
     #[inline(always)]
     fn ray(&self, k: usize) -> Ray {
-        let [[x, y, z], [u, v, w]] =
-            [&self.origin, &self.direction].map(|a| [a[0][k], a[1][k], a[2][k]]);
+        let at = |a: &[[f64; EIGHT]; 3]| DVec3::new(a[0][k], a[1][k], a[2][k]);
         Ray {
-            origin: DVec3::new(x, y, z),
-            direction: DVec3::new(u, v, w),
+            origin: at(&self.origin),
+            direction: at(&self.direction),
             length: self.length[k],
         }
     }

@@ -203,7 +203,9 @@ impl Mesh {
     /// # Panics
     /// If there is no such triangle.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|c| self.positions[c as usize])
+        let [a, b, c] = self.triangles[triangle as usize];
+        let at = |c: u32| self.positions[c as usize];
+        [at(a), at(b), at(c)]
     }
 
     /// The point of a triangle with the given weights of the second and the third corner. Its
@@ -212,7 +214,8 @@ impl Mesh {
         let [a, b, c] = self.corners(triangle);
         let uv = self.uv.as_ref().map_or([0.0; 2], |uv| {
             let [p, q, r] = uv[triangle as usize];
-            [0, 1].map(|d| p[d] + (q[d] - p[d]) * v + (r[d] - p[d]) * w)
+            let at = |d: usize| p[d] + (q[d] - p[d]) * v + (r[d] - p[d]) * w;
+            [at(0), at(1)]
         });
         Interaction {
             position: a + (b - a) * v + (c - a) * w,

@@ -70,6 +70,7 @@ impl Moving {
 impl Corner for Moving {
     type Plane = PlaneRate;
 
+    #[inline]
     fn at(&self) -> DVec3 {
         self.at
     }

@@ -112,7 +112,8 @@ impl Parallelogram {
     /// (a, b) of a point of the plane.
     #[inline(always)]
     pub fn coordinates(&self, p: DVec3) -> [f64; 2] {
-        self.dual.map(|d| (p - self.corner).dot(d))
+        let p = p - self.corner;
+        [p.dot(self.dual[0]), p.dot(self.dual[1])]
     }
 
     /// The point with the given (a, b).

@@ -88,18 +88,21 @@ impl<P> Shadow<P> {
     }
 
     /// Whether nothing of the convex hull of these points is hidden; errs to no.
+    #[inline]
     pub fn misses<C: Corner>(&self, hull: &[C]) -> bool {
         let outside = |(n, d, _): &(DVec3, f64, P)| hull.iter().all(|w| n.dot(w.at()) <= *d);
         self.planes.iter().any(outside)
     }
 
     /// Whether nothing of the box about `middle` is hidden; errs to no.
+    #[inline]
     pub fn misses_box(&self, middle: DVec3, half: DVec3) -> bool {
         let mut planes = self.planes.iter();
         planes.any(|(n, d, _)| n.dot(middle) + n.abs().dot(half) <= *d)
     }
 
     /// Whether all of that box is hidden.
+    #[inline]
     pub fn covers_box(&self, middle: DVec3, half: DVec3) -> bool {
         let mut planes = self.planes.iter();
         planes.all(|(n, d, _)| n.dot(middle) - n.abs().dot(half) >= *d)

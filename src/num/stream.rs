@@ -133,17 +133,22 @@ impl Stream {
     /// sits on a lattice.
     pub fn next_four(&mut self) -> [f64; 4] {
         match &mut self.net {
-            None => std::array::from_fn(|_| unit(self.uniform.next_u64())),
+            None => {
+                let mut next = || unit(self.uniform.next_u64());
+                [next(), next(), next(), next()]
+            }
             Some(net) => {
                 let sets = sobol_burley::NUM_DIMENSION_SETS_4D;
                 let turn = (net.set / sets).wrapping_mul(0x9e37_79b9);
                 let coarse =
                     sobol_burley::sample_4d(net.index, net.set % sets, net.scramble ^ turn);
                 net.set += 1;
-                coarse.map(|x| {
+                let mut filled = |x: f32| {
                     let fine = unit(self.uniform.next_u64()) / f64::from(1u32 << 24);
                     (f64::from(x) + fine).min(1.0 - f64::EPSILON)
-                })
+                };
+                let [a, b, c, d] = coarse;
+                [filled(a), filled(b), filled(c), filled(d)]
             }
         }
     }

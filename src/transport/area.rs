@@ -97,12 +97,13 @@ impl AreaSampler {
 
     fn of_weights(parts: &Arc<Parts>, weight: impl Fn(usize, f64) -> f64) -> Self {
         let mut sum = 0.0;
-        let sums = parts.weights().enumerate().map(|(k, w)| {
+        let mut before = vec![sum];
+        for (k, w) in parts.weights().enumerate() {
             sum += weight(k, w);
-            sum
-        });
+            before.push(sum);
+        }
         Self {
-            before: std::iter::once(0.0).chain(sums).collect(),
+            before,
             parts: Arc::clone(parts),
         }
     }

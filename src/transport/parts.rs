@@ -110,7 +110,10 @@ impl Parts {
     /// over its points, and a share of G and of what its neighbours have, so that those at the edge
     /// of a shadow are not missed.
     pub(super) fn seen_from(&self, scene: &Scene, end: &Vertex) -> Vec<f64> {
-        let clear: Vec<f64> = self.parts.iter().flat_map(|p| p.clear_from(end)).collect();
+        let mut clear = Vec::with_capacity(self.parts.len() * POINTS);
+        for part in &self.parts {
+            clear.extend_from_slice(&part.clear_from(end));
+        }
         let mut seen = clear.clone();
         let ends = |k: usize| {
             let part = &self.parts[k / POINTS];
@@ -128,10 +131,14 @@ impl Parts {
             let seen = |i: usize, j: usize| known[s.first + i + j * nu];
             let beside = |i: usize, n: usize| i.saturating_sub(1)..n.min(i + 2);
             all.extend((0..s.parts()).map(|k| {
-                let rows = beside(k / nu, nv);
-                let near = rows.flat_map(|j| beside(k % nu, nu).map(move |i| seen(i, j)));
+                let mut near = 0.0_f64;
+                for j in beside(k / nu, nv) {
+                    for i in beside(k % nu, nu) {
+                        near = near.max(seen(i, j));
+                    }
+                }
                 let k = s.first + k;
-                known[k].max(EDGE * near.fold(0.0, f64::max)) + UNSEEN * mean(&clear, k)
+                known[k].max(EDGE * near) + UNSEEN * mean(&clear, k)
             }));
         }
         all
@@ -158,10 +165,12 @@ fn smooth_edges(surface: &Surface) -> [Vec<f64>; 2] {
 impl Part {
     /// G of each of its points, what stands between left out; G·(its area) is at most 1.
     fn clear_from(&self, end: &Vertex) -> [f64; POINTS] {
-        self.points.map(|point| {
+        let mut terms = [0.0; POINTS];
+        for (out, point) in terms.iter_mut().zip(&self.points) {
             let y = (point.position, point.normal);
             let term = geometry_term(y, end.oriented()).map_or(0.0, |(term, _)| term);
-            term.min(1.0 / self.area)
-        })
+            *out = term.min(1.0 / self.area);
+        }
+        terms
     }
 }

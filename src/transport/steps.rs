@@ -9,7 +9,8 @@ pub(super) fn even(count: usize) -> Vec<f64> {
 
 /// Which of count\[0\] × count\[1\] cells the parameters `uv` lie in.
 pub(super) fn cell_at(count: [usize; 2], uv: [f64; 2]) -> [usize; 2] {
-    std::array::from_fn(|d| ((uv[d] * count[d] as f64) as usize).min(count[d] - 1))
+    let cell = |d: usize| ((uv[d] * count[d] as f64) as usize).min(count[d] - 1);
+    [cell(0), cell(1)]
 }
 
 /// The step, and the place in [0, 1) within it, at which a distribution function of `steps` equal

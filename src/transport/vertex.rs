@@ -191,7 +191,8 @@ impl Batch {
             self.normal[d][..n].fill(normal[d]);
         }
         self.shape[..n].fill(shape);
-        let position = self.position.each_mut().map(|c| &mut c[..n]);
+        let [x, y, z] = &mut self.position;
+        let position = [&mut x[..n], &mut y[..n], &mut z[..n]];
         (position, &mut self.weight[..n])
     }
 
@@ -205,8 +206,7 @@ impl Batch {
     /// Position and shape of vertex `i`.
     #[inline]
     pub(super) fn place(&self, i: usize) -> Place {
-        let [x, y, z] = self.position.each_ref().map(|c| c[i]);
-        (DVec3::new(x, y, z), self.shape[i])
+        (self.oriented(i).0, self.shape[i])
     }
 
     /// The factor d of the BRDF at vertex k for light from the point `light`, where the pinhole
@@ -252,8 +252,8 @@ impl Batch {
         out: &mut [f64],
     ) {
         let count = self.len();
-        let [x, y, z] = self.position.each_ref().map(|c| &c[..count]);
-        let [a, b, c] = self.normal.each_ref().map(|c| &c[..count]);
+        let [x, y, z] = first(count, &self.position);
+        let [a, b, c] = first(count, &self.normal);
         let (weight, out) = (&weight[..count], &mut out[..count]);
         widest(
             #[inline(always)]
@@ -270,10 +270,10 @@ impl Batch {
     /// of G.
     pub(super) fn geometry_terms_to(&self, other: &Self, weight: &[f64], out: &mut [f64]) {
         let count = self.len();
-        let [x, y, z] = self.position.each_ref().map(|c| &c[..count]);
-        let [a, b, c] = self.normal.each_ref().map(|c| &c[..count]);
-        let [u, v, w] = other.position.each_ref().map(|c| &c[..count]);
-        let [k, l, m] = other.normal.each_ref().map(|c| &c[..count]);
+        let [x, y, z] = first(count, &self.position);
+        let [a, b, c] = first(count, &self.normal);
+        let [u, v, w] = first(count, &other.position);
+        let [k, l, m] = first(count, &other.normal);
         let (weight, out) = (&weight[..count], &mut out[..count]);
         widest(
             #[inline(always)]
@@ -285,6 +285,12 @@ impl Batch {
             },
         );
     }
+}
+
+/// The first `count` of each component.
+#[inline]
+fn first(count: usize, [x, y, z]: &[Vec<f64>; 3]) -> [&[f64]; 3] {
+    [&x[..count], &y[..count], &z[..count]]
 }
 
 /// G for the segment d from a point with normal n to one with normal m: (n·d)(−m·d)/|d|⁴ where both

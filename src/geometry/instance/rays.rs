@@ -56,15 +56,15 @@ impl Instance {
         let (mut enter, mut leave) = (0.0_f64, segment.length);
         for axis in 0..3 {
             let (o, d) = (origin[axis], segment.direction[axis]);
-            let ends = [low[axis] - by - o, high[axis] + by - o];
+            let (first, last) = (low[axis] - by - o, high[axis] + by - o);
             if d.abs() < f64::MIN_POSITIVE {
-                if ends[0] > 0.0 || ends[1] < 0.0 {
+                if first > 0.0 || last < 0.0 {
                     return false;
                 }
                 continue;
             }
             let inverse = 1.0 / d;
-            let [a, b] = ends.map(|end| end * inverse);
+            let (a, b) = (first * inverse, last * inverse);
             (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
         }
         enter <= leave

@@ -19,7 +19,8 @@ impl Facet {
     /// The point at these weights of its second and third corner: weights of the triangle's.
     pub(super) fn at(&self, [v, w]: [f64; 2]) -> [f64; 2] {
         let [a, b, c] = self.corners;
-        [0, 1].map(|d| a[d] + (b[d] - a[d]) * v + (c[d] - a[d]) * w)
+        let at = |d: usize| a[d] + (b[d] - a[d]) * v + (c[d] - a[d]) * w;
+        [at(0), at(1)]
     }
 
     /// The weights of its second and third corner at a point of the triangle.

@@ -194,20 +194,23 @@ impl<S> Walk<S> {
     ) -> Self {
         let (origin, advance) = space.start(ray);
         // A component too small to be told from 0 keeps its sign and stays finite.
-        let inverse = ray.direction.as_vec3a().to_array().map(|d| {
+        let inverse = |d: f32| {
             1.0 / if d.abs() > 1e-20 {
                 d
             } else {
                 1e-20_f32.copysign(d)
             }
-        });
+        };
+        let [x, y, z] = ray.direction.as_vec3a().to_array();
+        let inverse = [inverse(x), inverse(y), inverse(z)];
+        let near = |axis: usize| 2 * axis + usize::from(inverse[axis] < 0.0);
         stack.clear();
         Self {
             ray: number,
             state,
             origin: origin.to_array(),
             inverse,
-            near: [0, 1, 2].map(|axis| 2 * axis + usize::from(inverse[axis] < 0.0)),
+            near: [near(0), near(1), near(2)],
             advance,
             end: space.limit(ray.length, advance),
             current: 0,
@@ -305,11 +308,12 @@ impl Node {
 
     /// Distance of a point from box `k`.
     fn distance(&self, k: usize, p: [f32; 3]) -> f32 {
-        let outside = [0, 1, 2].map(|axis| {
+        let outside = |axis: usize| {
             let (low, high) = (self.bounds[2 * axis][k], self.bounds[2 * axis + 1][k]);
             (low - p[axis]).max(p[axis] - high).max(0.0)
-        });
-        outside.iter().map(|d| d * d).sum::<f32>().sqrt()
+        };
+        let [x, y, z] = [outside(0), outside(1), outside(2)];
+        (x * x + y * y + z * z).sqrt()
     }
 }
 

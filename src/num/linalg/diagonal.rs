@@ -7,8 +7,10 @@ pub fn rows_times<'f>(
     mut m: DMatrix<f64>,
     factors: impl IntoIterator<Item = &'f f64>,
 ) -> DMatrix<f64> {
-    for (mut row, f) in m.row_iter_mut().zip(factors) {
-        row *= *f;
+    let factors: Vec<f64> = factors.into_iter().copied().collect();
+    for mut column in m.column_iter_mut() {
+        let entries = column.iter_mut().zip(&factors);
+        entries.for_each(|(x, f)| *x *= f);
     }
     m
 }
@@ -18,8 +20,10 @@ pub fn rows_over<'f>(
     mut m: DMatrix<f64>,
     factors: impl IntoIterator<Item = &'f f64>,
 ) -> DMatrix<f64> {
-    for (mut row, f) in m.row_iter_mut().zip(factors) {
-        row /= *f;
+    let factors: Vec<f64> = factors.into_iter().copied().collect();
+    for mut column in m.column_iter_mut() {
+        let entries = column.iter_mut().zip(&factors);
+        entries.for_each(|(x, f)| *x /= f);
     }
     m
 }

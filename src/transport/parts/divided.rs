@@ -142,8 +142,8 @@ impl Divided {
 
     /// The part that holds a cell.
     fn part_of(&self, cell: [usize; 2]) -> usize {
-        let [i, j] = std::array::from_fn(|d| cell[d] * self.grid[d] / self.count(d));
-        i + j * self.grid[0]
+        let along = |d: usize| cell[d] * self.grid[d] / self.count(d);
+        along(0) + along(1) * self.grid[0]
     }
 
     /// The parameters in a part for u ∈ [0, 1)², rows of cells by their weight, then cells by
@@ -190,10 +190,12 @@ impl Divided {
     /// The parameters at a place in [0, 1]² of a part.
     fn inside(&self, part: usize, place: [f64; 2]) -> [f64; 2] {
         let index = [part % self.grid[0], part / self.grid[0]];
-        std::array::from_fn(|d| {
-            let [from, to] = self.cells(d, index[d]).map(|c| self.edges[d][c]);
-            from + place[d] * (to - from)
-        })
+        let at = |d: usize| {
+            let [from, to] = self.cells(d, index[d]);
+            let from = self.edges[d][from];
+            from + place[d] * (self.edges[d][to] - from)
+        };
+        [at(0), at(1)]
     }
 
     /// A ball around a part: around all of a sphere or a disc.
