@@ -44,6 +44,14 @@ pub struct Factors {
 }
 
 impl Factors {
+    /// How far Φcam of elements with these albedos may be off, pixels × spots, W: what all steps
+    /// move, and a millionth of the light, below which nothing is refined and terms are left out.
+    pub fn bound(&self, albedo: &[f64]) -> Matrix {
+        let least = self.terms.phi(albedo).map(|x| SMOOTH_TARGET * x.abs());
+        let moved = self.moved(albedo);
+        moved.fold(least, |sum, step| sum + step.abs())
+    }
+
     /// What each of the steps moves in Φcam of elements with these albedos, pixels × spots, W.
     pub fn moved(&self, albedo: &[f64]) -> impl Iterator<Item = Matrix> {
         let steps = self.steps.iter();

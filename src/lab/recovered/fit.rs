@@ -150,16 +150,16 @@ fn fit(problem: &Problem<'_>, known: Known<'_>, found: &Recovered) -> Option<Fit
         return Some(fit);
     };
     let picture = found.seen();
-    let moved = factors.moved(picture.as_slice());
-    let off = moved.fold(seen.map(|_| 0.0), |sum, step| sum + step.abs());
+    let off = factors.bound(picture.as_slice());
     let nearest = seen.zip_zip_map(phi, &off, |seen, phi, off| {
         seen + (phi - seen).clamp(-off, off)
     });
     let within = of(&nearest)?;
+    let is_open = within.fits && within.outlier.is_none();
     Some(Fit {
         within_integration: Some(within.chi2_per_dof),
-        fits: within.fits && within.outlier.is_none(),
-        outlier: within.outlier.or(fit.outlier),
+        fits: is_open,
+        outlier: within.outlier.or(fit.outlier).filter(|_| !is_open),
         ..fit
     })
 }

@@ -46,9 +46,7 @@ impl LocatedPlan {
         let is_refuted = by_noise(&left) < FIT_LEVEL;
         let steps = |own: &&Factors| is_refuted && !own.steps.is_empty();
         let within = model.factors.as_ref().filter(steps).map(|own| {
-            let moved = own.moved(rho.as_slice());
-            let off = moved.fold(left.map(|_| 0.0), |sum, step| sum + step.abs());
-            let off = off.component_mul(&roots);
+            let off = own.bound(rho.as_slice()).component_mul(&roots);
             left.zip_map(&off, |x, off| x - x.clamp(-off, off))
         });
         let entries = of.counted();

@@ -283,6 +283,35 @@ fn what_integrals_leave_over_is_no_evidence() {
     );
 }
 
+/// With noise far below what elements are integrated to, light by another rule is open, and no
+/// entry is called an outlier; light that is off by 1e-5 is refuted.
+#[test]
+fn noise_below_the_precision_of_the_model_leaves_it_open() {
+    let scene = small("bench");
+    let exact = converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED);
+    let exact = exact.unwrap().phi;
+    let (kernel, effort) = (Kernel::Physical, Effort::USUAL);
+    let model = MatrixModel::over_areas(&scene, kernel, None, Occlusion::Ignored, effort);
+    let model = model.unwrap();
+    let judged = |share: f64, clean: &Matrix| {
+        let stderr = Matrix::from_element(clean.nrows(), clean.ncols(), share * clean.mean());
+        let mut draw = normal(7);
+        let phi = clean.map(|x| x + share * clean.mean() * draw()[0]);
+        let problem = problem(&model, &phi, Some(&stderr)).unwrap();
+        let found = recover(Method::Joint, &problem, &Options::default()).unwrap();
+        fit(&problem, known(&stderr, model.factors.as_ref()), &found).unwrap()
+    };
+    for share in [1e-8, 1e-9, 1e-10] {
+        let own = judged(share, &exact);
+        assert!(own.fits && own.outlier.is_none(), "{share}: {own:?}");
+        assert!(own.is_open() || share > 1e-9, "{share}: {own:?}");
+    }
+    let off = Matrix::from_fn(exact.nrows(), exact.ncols(), |p, l| {
+        exact[(p, l)] * (1.0 + 1e-5 * ((p + l) % 3) as f64)
+    });
+    assert!(!judged(1e-8, &off).fits);
+}
+
 /// The picture of photographs without noise, by another rule, is off by what the integrals are off:
 /// by no more than twice what their last steps move it. With noise of any size errors of all
 /// elements allow for both, and that is told where it is not much less than the noise.
