@@ -112,6 +112,7 @@ impl Kernel {
         };
         let falls = hidden
             .fall_off
+            .as_ref()
             .map_or(1.0, |f| f.towards(hidden.normal, -r));
         at_wall * at_hidden * falls / (r2 * r2)
     }

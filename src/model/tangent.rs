@@ -223,6 +223,7 @@ impl WallPoint {
         };
         let fall = hidden
             .fall_off
+            .as_ref()
             .map_or(1.0, |own| own.towards(hidden.normal, -r));
         let speed = r_rate.length() * over.sqrt()
             + rate.normal.length()
