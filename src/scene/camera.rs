@@ -148,7 +148,9 @@ fn on_the_wall(
             }
             NoView::Behind => Fault::new(
                 keys!["position"],
-                format!("the camera stands behind the wall on which {at} lies"),
+                format!(
+                    "the camera stands behind (or in the plane of) the wall on which {at} lies"
+                ),
                 "move it to the front (the side of u × v)",
             ),
         }

@@ -48,11 +48,22 @@ fn message(error: &toml::de::Error) -> String {
     let words = [
         ("expected f64", "expected a number"),
         ("expected u32", "expected a whole number"),
+        ("expected u64", "expected a whole number"),
+        (
+            "invalid mantissa, expected digits",
+            "no digits before the point (0.2 is written so, not .2)",
+        ),
+        (
+            "invalid fraction, expected digits",
+            "no digits after the point (2.0 is written so, not 2.)",
+        ),
+        (
+            "unexpected key or value, expected newline, `#`",
+            "something follows the value (a decimal comma is a point here: 1.5)",
+        ),
     ];
-    let words = words
-        .into_iter()
-        .chain([("expected u64", "expected a whole number")]);
-    words.fold(message, |message, (old, new)| message.replace(old, new))
+    let all = words.into_iter();
+    all.fold(message, |message, (old, new)| message.replace(old, new))
 }
 
 /// Parses TOML text; `source` names it in errors, and `example` says where a right one is shown.

@@ -65,6 +65,18 @@ fn a_negative_power() {
 }
 
 #[test]
+fn numbers_as_others_write_them() {
+    for (number, word) in [
+        (".2", "0.2 is written so"),
+        ("2.", "2.0 is written so"),
+        ("1,5", "a decimal comma is a point here"),
+    ] {
+        let line = format!("power = {number}");
+        refuses_altered("power = 5.0e-3", &line, "power =", &[word]);
+    }
+}
+
+#[test]
 fn an_albedo_above_one() {
     let words = ["albedo 1.2", "outside [0, 1]", "from 0 to 1"];
     refuses_altered("lambertian = 0.8", "lambertian = 1.2", "1.2", &words);
