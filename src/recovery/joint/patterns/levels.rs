@@ -160,6 +160,36 @@ pub(super) fn rule() -> Rule {
     Rule::gauss_legendre(NODES)
 }
 
+/// The levels a, b from 0 to `top` of the least ‖d − a u − b w‖: that of the plane, or on one of
+/// the sides. Not by iteration, whose tolerance is wide along the scale where that is nearly free.
+pub(super) fn best_within(d: &DVector<f64>, [u, w]: &[DVector<f64>; 2], top: f64) -> [f64; 2] {
+    let inside = |x: &f64| (0.0..=top).contains(x);
+    if let Some(best) = LevelFit::new(d, u, w).map(|fit| fit.best)
+        && best.iter().all(inside)
+    {
+        return best;
+    }
+    // The best of one level at the other.
+    let other = |own: &DVector<f64>, left: &DVector<f64>| {
+        let square = own.norm_squared();
+        if square > 0.0 {
+            (own.dot(left) / square).clamp(0.0, top)
+        } else {
+            0.0
+        }
+    };
+    let ends = [0.0, top].into_iter().filter(|end| end.is_finite());
+    let sides = ends.flat_map(|end| {
+        [
+            [end, other(w, &(d - u * end))],
+            [other(u, &(d - w * end)), end],
+        ]
+    });
+    let misfit = |[a, b]: &[f64; 2]| (u * *a + w * *b - d).norm_squared();
+    let least = sides.min_by(|x, y| misfit(x).total_cmp(&misfit(y)));
+    least.unwrap_or([0.0; 2])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

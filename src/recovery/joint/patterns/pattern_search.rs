@@ -5,17 +5,19 @@
 //! minimiser over all 0 ≤ x ≤ 1, cut at several thresholds. From each the change of one or two
 //! elements that lowers ‖R x − d‖ most is made until none lowers it, with the levels that are best
 //! for the pattern (least squares in [0, 1]). With given levels branch and bound
-//! ([`super::branch`]) ends with a proof, or after a fixed number of relaxations. Misfits are norms
+//! ([`super::branch`]) ends with a proof, or after a fixed number of relaxations; with others all
+//! patterns of up to 16 elements are tried. Misfits are norms
 //! of R x − d itself, never differences of Gram products, which would lose what little noise
 //! leaves.
 
+mod exhaustion;
 mod starts;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::branch;
-use super::levels::LevelFit;
+use super::levels::best_within;
 use crate::num::control::Control;
 use crate::num::linalg::gram_product;
 use crate::num::quadratic::{Bounds, box_least_squares};
@@ -124,6 +126,14 @@ impl<'a> Search<'a> {
             Levels::Ratio(_) => (None, f64::INFINITY),
             Levels::Within(top) => (None, top),
         };
+        if let (None, Some(best)) = (given, self.best_of_all()) {
+            return Ok(Found {
+                bound: 0.5 * best.misfit,
+                best,
+                iterations: 0,
+                changes: 0,
+            });
+        }
         let bounds = match given {
             Some([dark, light]) => Bounds::all(n, dark, light),
             None => Bounds::all(n, 0.0, top),
@@ -186,7 +196,7 @@ impl<'a> Search<'a> {
                 let factor = (one.dot(self.d) / one.norm_squared()).max(0.0);
                 [factor * a, factor * b]
             }
-            Levels::Within(top) => within(self.d, &columns, top),
+            Levels::Within(top) => best_within(self.d, &columns, top),
         };
         let misfit = (&columns[0] * levels[0] + &columns[1] * levels[1] - self.d).norm_squared();
         let [mut dark, mut bright] = levels;
@@ -266,34 +276,4 @@ impl<'a> Search<'a> {
             made += 1;
         }
     }
-}
-
-/// The levels a, b from 0 to `top` of the least ‖d − a u − b w‖: that of the plane, or on one of
-/// the sides. Not by iteration, whose tolerance is wide along the scale where that is nearly free.
-fn within(d: &DVector<f64>, [u, w]: &[DVector<f64>; 2], top: f64) -> [f64; 2] {
-    let inside = |x: &f64| (0.0..=top).contains(x);
-    if let Some(best) = LevelFit::new(d, u, w).map(|fit| fit.best)
-        && best.iter().all(inside)
-    {
-        return best;
-    }
-    // The best of one level at the other.
-    let other = |own: &DVector<f64>, left: &DVector<f64>| {
-        let square = own.norm_squared();
-        if square > 0.0 {
-            (own.dot(left) / square).clamp(0.0, top)
-        } else {
-            0.0
-        }
-    };
-    let ends = [0.0, top].into_iter().filter(|end| end.is_finite());
-    let sides = ends.flat_map(|end| {
-        [
-            [end, other(w, &(d - u * end))],
-            [other(u, &(d - w * end)), end],
-        ]
-    });
-    let misfit = |[a, b]: &[f64; 2]| (u * *a + w * *b - d).norm_squared();
-    let least = sides.min_by(|x, y| misfit(x).total_cmp(&misfit(y)));
-    least.unwrap_or([0.0; 2])
 }

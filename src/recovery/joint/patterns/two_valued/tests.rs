@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::joint::patterns::part;
-use crate::recovery::{Nuisance, recover};
+use crate::recovery::{Nuisance, WeightRule, recover};
 
 pub(super) fn noisy(
     bench: &Bench,
@@ -165,7 +165,7 @@ fn probabilities_are_those_of_all_patterns() {
 
 fn by_entry() -> Options {
     Options {
-        weighting: crate::recovery::WeightRule::Entries,
+        weighting: WeightRule::Entries,
         ..Options::default()
     }
 }
@@ -368,10 +368,58 @@ fn a_pattern_is_found_whatever_the_unit() {
             let off = (&found.reflectance - &expected).amax();
             assert!(off < 0.05, "{levels:?} {given:?}: {off}");
             // 16 residuals of unit variance.
-            let chi2 = 2.0 * found.solver.unwrap().objective;
+            let solver = found.solver.unwrap();
+            let chi2 = 2.0 * solver.objective;
             assert!(chi2 < 16.0 + 5.0 * 32f64.sqrt(), "{levels:?}: {chi2}");
+            // All patterns of so few elements were tried.
+            assert_eq!(solver.gap, 0.0, "{levels:?} {given:?}");
             assert_eq!(found.choice == Choice::Given, given.is_some());
         }
+    }
+}
+
+/// Without the levels the pattern that fits best of all 2⁹, told by least squares over all entries,
+/// at noise that many of them explain.
+#[test]
+fn of_few_elements_the_best_of_all_patterns_is_found() {
+    let bench = Bench::new(3.0, 3, 6);
+    for (seed, noise) in [(1, 0.01), (2, 0.03), (3, 0.1), (4, 0.3), (5, 0.3), (6, 0.3)] {
+        let truth = DVector::from_fn(9, |j, _| if (j + seed) % 3 == 0 { 0.8 } else { 0.1 });
+        let [phi, stderr] = noisy(&bench, &truth, noise, seed as u64);
+        let over = |m: DMatrix<f64>| m.zip_map(&stderr, |x, s| x / s);
+        let seen = over(phi.clone());
+        let misfit = |set: usize| {
+            let light = DVector::from_fn(9, |j, _| f64::from(u8::from(set >> j & 1 == 1)));
+            let [u, w] = [light.map(|x| 1.0 - x), light].map(|x| over(bench.phi(&x)));
+            let (uu, uw, ww) = (u.dot(&u), u.dot(&w), w.dot(&w));
+            let (ud, wd) = (u.dot(&seen), w.dot(&seen));
+            let off = |a: f64, b: f64| (&seen - &u * a - &w * b).norm_squared();
+            let of_both = uu * ww - uw * uw;
+            let [a, b] = [ww * ud - uw * wd, uu * wd - uw * ud].map(|x| x / of_both);
+            if of_both > 0.0 && a >= 0.0 && b >= 0.0 {
+                return off(a, b);
+            }
+            let alone = |square: f64, with: f64| if square > 0.0 { with / square } else { 0.0 };
+            off(alone(uu, ud).max(0.0), 0.0).min(off(0.0, alone(ww, wd).max(0.0)))
+        };
+        let all = (0..512).map(misfit);
+        let least = all.fold(f64::INFINITY, f64::min);
+        let nuisance = Nuisance {
+            free_scale: true,
+            ..Nuisance::default()
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        let options = Options {
+            weighting: WeightRule::Entries,
+            ..Options::default()
+        };
+        let found = recover(Method::JointTwoValued, &problem, &options).unwrap();
+        let x = &found.reflectance;
+        let middle = 0.5 * (x.min() + x.max());
+        let set = (0..9).map(|j| usize::from(x[j] > middle) << j).sum();
+        let own = misfit(set);
+        assert!(own <= least * (1.0 + 1e-9), "{seed}: {own} {least}");
     }
 }
 
