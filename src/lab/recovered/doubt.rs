@@ -278,14 +278,17 @@ fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
     let known = found.patterns.as_ref();
     let known = known.is_some_and(|p| p.assumed().sum.converged());
     (above > GAP && !known).then(|| {
-        let cure = match found.method {
-            Method::JointTwoValued => "Compare with joint, or give the --levels",
-            _ => "Scale the photographs, or use joint-unbounded",
-        };
-        format!(
-            "the search ended before it was proved to be at the minimum: χ² may be {} lower. {cure}",
-            figure(above, 2)
-        )
+        let above = figure(above, 2);
+        match found.method {
+            Method::JointTwoValued => format!(
+                "no change of one or two elements fits better, but not every pattern was tried: χ² of \
+                 another may be up to {above} lower. Compare with joint, or give the --levels"
+            ),
+            _ => format!(
+                "the search ended before it was proved to be at the minimum: χ² may be {above} lower. \
+                 Scale the photographs, or use joint-unbounded"
+            ),
+        }
     })
 }
 

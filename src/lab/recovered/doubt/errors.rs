@@ -88,9 +88,9 @@ pub(super) fn integrated(found: &Recovered, judged: &Judged) -> Option<String> {
     })
 }
 
-/// Whether what is left over may be noise of the stated size.
+/// Whether what is left over may be noise of the stated size, not what integrals are off by.
 fn is_noise(fit: &&Fit) -> bool {
-    fit.fits && !fits_better(fit.chi2_per_dof, fit.p)
+    fit.fits && !fit.is_open() && !fits_better(fit.chi2_per_dof, fit.p)
 }
 
 /// Noise that neighbouring pixels share where it is taken for each one's own: of what is left over

@@ -46,7 +46,7 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
     }
     if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
         let counted = match &judged.moved {
-            Some(_) => "count both",
+            Some(_) => "count the noise and the last steps of these integrals",
             None => "know of noise alone: they are TOO SMALL",
         };
         return Some(format!(
@@ -195,9 +195,9 @@ fn contradiction(best: &Attainable, sent_on: Option<&str>) -> String {
         "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
          ({told}); {any}.{beside} The scene is not what was photographed, or the standard errors are too \
          small. Check{exact} geometry, order and orientation of the frames, unit and --stderr; more \
-         --elements where they are coarse; what stands in the way, in the scene; \
-         --frame-constant, --background or --occluder-light for other light; --integration centres \
-         where elements were taken at their centres, as `phicam model` does"
+         --elements where they are coarse; --frame-constant or --background for other light. Of a \
+         scene check what stands in the way, in it and by its light (--occluder-light); and give \
+         --integration centres where elements were taken at their centres, as `phicam model` does"
     )
 }
 
