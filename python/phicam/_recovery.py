@@ -509,7 +509,7 @@ def _levels(given: Any) -> tuple[float, float] | None:
 def _used(settings: dict[str, Any], methods: Sequence[str] | None) -> None:
     """Refuses settings that none of the methods takes."""
     for name, value in settings.items():
-        if value is None or value is False or methods is None or name in ("pixels", "rule"):
+        if value is None or value is False or methods is None or name == "pixels":
             continue
         takers = _native.setting_methods(name)
         if not any(method in takers for method in methods):

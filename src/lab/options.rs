@@ -248,4 +248,18 @@ impl OptionError {
     pub fn new(cause: impl Display, cure: impl Display) -> Self {
         Self(format!("{cause}\n  cure: {cure}"))
     }
+
+    /// Refuses the first of these options that is given: beside the others it would change nothing.
+    ///
+    /// # Errors
+    /// The option, and `why`.
+    pub fn refuse_idle(options: &[(&str, bool)], why: &str) -> Result<(), Self> {
+        match options.iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((name, _)) => Err(Self::new(
+                format!("--{name} would change nothing: {why}"),
+                "leave it out",
+            )),
+        }
+    }
 }

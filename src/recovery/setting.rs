@@ -9,6 +9,8 @@ named! {
     pub enum Setting {
         /// Standard errors relative to each entry.
         Noise = "noise",
+        /// How the parameter is chosen that is not given.
+        Rule = "rule",
         /// Singular values that are kept.
         Rank = "rank",
         /// Damping of small singular values, a fraction of σ1.
@@ -54,6 +56,9 @@ impl Setting {
         match self {
             Setting::Noise => true,
             Setting::Bands => ![Method::JointTv, Method::JointTwoValued].contains(&method),
+            Setting::Rule => {
+                [Method::Tsvd, Method::Tikhonov, Method::TikhonovGradient].contains(&method)
+            }
             Setting::Rank => method == Method::Tsvd,
             Setting::Damping => [Method::Tikhonov, Method::TikhonovGradient].contains(&method),
             Setting::Tolerance => [

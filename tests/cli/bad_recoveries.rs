@@ -155,6 +155,23 @@ fn settings_that_no_method_asked_for_takes() {
     for (rest, setting, method) in [
         ("--method pinv --rank 3", "--rank", "tsvd"),
         ("--method pinv --damping 0.1", "--damping", "tikhonov"),
+        ("--method joint --rule gcv", "--rule", "tsvd"),
+        ("--method pinv --weighting entries", "--weighting", "joint"),
+        (
+            "--method tsvd --rank 2 --rule discrepancy",
+            "--rule would change nothing",
+            "--rank",
+        ),
+        (
+            "--method pinv --integration quadrature",
+            "--integration would change nothing",
+            "pixel by pixel",
+        ),
+        (
+            "--kernel published --integration quadrature",
+            "--integration would change nothing",
+            "published kernel",
+        ),
         ("--method tsvd,joint --tolerance 0.1", "--tolerance", "pinv"),
         ("--method pinv,joint,pinv", "pinv twice", "once"),
     ] {
@@ -168,12 +185,13 @@ fn photographs_that_are_black() {
     let workspace = measured();
     write(&workspace, "phi.npy", 6, 0.0, (0, 0, 0.0));
     write(&workspace, "errors.npy", 6, 1e-14, (0, 0, 1e-14));
-    for more in ["", "--stderr errors.npy", "--rule gcv", "--rule l-curve"] {
-        every_method_refuses(
-            &workspace,
-            more,
-            &["every entry of phi is zero", "no light", "check"],
-        );
+    let words = ["every entry of phi is zero", "no light", "check"];
+    for more in ["", "--stderr errors.npy"] {
+        every_method_refuses(&workspace, more, &words);
+    }
+    for rule in ["gcv", "l-curve"] {
+        let line = format!("recover bench --phi phi.npy --elements 2 --rule {rule}");
+        workspace.refuses(&line, &words);
     }
 }
 

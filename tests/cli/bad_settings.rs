@@ -139,6 +139,37 @@ fn of_recovery() {
     ]);
 }
 
+/// Settings that would change nothing beside others are refused: nobody takes them for heard.
+#[test]
+fn that_change_nothing() {
+    refuses_each(&[
+        (
+            "locate done --orders 0 --seed 2",
+            &["--seed would change nothing", "--orders 0"],
+        ),
+        (
+            "calibrate done --free hidden.yaw --starts 1 --spread 2",
+            &["--spread would change nothing", "--starts 1"],
+        ),
+        (
+            "study occluder tiny.toml --samples 0 --sensor ccd",
+            &["--sensor would change nothing", "--samples 0"],
+        ),
+        (
+            "study occluder tiny.toml --kinds plate --cells 4",
+            &["--cells would change nothing", "random mask"],
+        ),
+        (
+            "study occluder tiny.toml --kinds none --size 2",
+            &["--size would change nothing", "no occluder"],
+        ),
+        (
+            "study layout tiny.toml --prior white --length 2",
+            &["--length would change nothing", "--prior smooth"],
+        ),
+    ]);
+}
+
 #[test]
 fn of_the_command_itself() {
     refuses_each(&[

@@ -37,12 +37,12 @@ pub(in crate::cli) struct CalibrateArgs {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub starts: u16,
     /// How far off the other starts are, in standard deviations: those given, or 1°, 1 %, 1 % of
-    /// the distance
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = spread)]
-    pub spread: f64,
-    /// Seed of the starts
-    #[arg(long, default_value_t = 1, value_parser = whole)]
-    pub seed: u64,
+    /// the distance; 1 unless given
+    #[arg(long, value_name = "FACTOR", value_parser = spread)]
+    pub spread: Option<f64>,
+    /// Seed of the starts; 1 unless given
+    #[arg(long, value_parser = whole)]
+    pub seed: Option<u64>,
 }
 
 /// "NAME" or "NAME=SIGMA".

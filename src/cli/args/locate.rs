@@ -30,9 +30,9 @@ pub(in crate::cli) struct LocateArgs {
     /// leaves that question out
     #[arg(long, value_name = "N", default_value_t = 999, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub orders: u32,
-    /// Seed of these orders
-    #[arg(long, default_value_t = 1, value_parser = whole)]
-    pub seed: u64,
+    /// Seed of these orders; 1 unless given
+    #[arg(long, value_parser = whole)]
+    pub seed: Option<u64>,
 }
 
 /// One of the names of what may be looked for.

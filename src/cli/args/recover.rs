@@ -72,13 +72,13 @@ pub(in crate::cli) struct RecoverArgs {
     pub elements: Option<[usize; 2]>,
     #[command(flatten)]
     pub occlusion: OcclusionArgs,
-    /// How the model of the joint methods integrates; the published kernel, more than 1024 elements
-    /// and the other methods are by centres
-    #[arg(long, value_parser = choice::named::<Integration>(), default_value = "quadrature")]
-    pub integration: Integration,
-    /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
-    #[arg(long, value_parser = choice::named::<Rule>(), default_value = "discrepancy")]
-    pub rule: Rule,
+    /// How the model of the joint methods integrates, quadrature unless given; the published kernel,
+    /// more than 1024 elements and the other methods are by centres
+    #[arg(long, value_parser = choice::named::<Integration>())]
+    pub integration: Option<Integration>,
+    /// How tsvd, tikhonov and tikhonov-gradient choose their parameter; discrepancy unless given
+    #[arg(long, value_parser = choice::named::<Rule>())]
+    pub rule: Option<Rule>,
     /// Singular directions that tsvd keeps, in place of the rule's choice
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub rank: Option<usize>,
@@ -109,9 +109,9 @@ pub(in crate::cli) struct RecoverArgs {
 /// What the methods over all pixels and spots can do besides.
 #[derive(Clone, Debug, Arguments)]
 pub(in crate::cli) struct JointArgs {
-    /// By what the joint methods weigh the entries of Φcam
-    #[arg(long, value_parser = choice::named::<WeightRule>(), default_value = "noise")]
-    pub weighting: WeightRule,
+    /// By what the joint methods weigh the entries of Φcam; noise unless given
+    #[arg(long, value_parser = choice::named::<WeightRule>())]
+    pub weighting: Option<WeightRule>,
     /// Weight of joint-tv's total variation relative to σ1², in place of the one of the largest
     /// evidence
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]

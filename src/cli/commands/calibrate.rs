@@ -18,6 +18,7 @@ use crate::cli::{Outcome, progress};
 use crate::folder::write_copies;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
+use crate::lab::options::OptionError;
 use crate::lab::{Calibration, CalibrationPlan, Found, Free, Work};
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
@@ -26,6 +27,13 @@ use crate::scene::Scene;
 
 pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
     let of = &args.photographs;
+    if args.starts == 1 {
+        let given = [
+            ("seed", args.seed.is_some()),
+            ("spread", args.spread.is_some()),
+        ];
+        OptionError::refuse_idle(&given, "--starts 1 has no start at random")?;
+    }
     let (scene, record) = scene_of(of, console)?;
     let origin = record.as_ref().map(|record| &record.origin);
     let plan = CalibrationPlan {
@@ -129,8 +137,8 @@ fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPla
         occlusion: of.occlusion.occlusion(),
         integration: of.integration,
         starts: usize::from(args.starts),
-        spread: args.spread,
-        seed: args.seed,
+        spread: args.spread.unwrap_or(1.0),
+        seed: args.seed.unwrap_or(1),
     }
 }
 
@@ -167,8 +175,8 @@ fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation 
     let options = Spelled::default()
         .with("--free", free.join(","))
         .with("--starts", args.starts)
-        .with("--spread", args.spread)
-        .with("--seed", args.seed)
+        .maybe("--spread", args.spread)
+        .maybe("--seed", args.seed)
         .maybe("--frame-gain", args.frame_gain)
         .flag("--free-scale", args.free_scale)
         .flag("--error-field", args.error_field);

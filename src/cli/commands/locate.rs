@@ -12,6 +12,7 @@ use crate::cli::run_folder::{LOCATED, RunFolder};
 use crate::cli::{Outcome, progress};
 use crate::jobs::need;
 use crate::lab::finding::Describe;
+use crate::lab::options::OptionError;
 use crate::lab::{Found, LocatedPlan, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
@@ -22,6 +23,10 @@ const DEGREES: f64 = 15.0;
 
 pub(in crate::cli) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Failure> {
     let of = &args.photographs;
+    if args.orders == 0 {
+        let why = "--orders 0 tries none";
+        OptionError::refuse_idle(&[("seed", args.seed.is_some())], why)?;
+    }
     let (scene, record) = scene_of(of, console)?;
     let plan = plan(args, &scene, console);
     need::locate(&scene, plan.elements)?;
@@ -67,7 +72,7 @@ fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
         integration: of.integration,
         background: of.background,
         orders: u64::from(args.orders),
-        seed: args.seed,
+        seed: args.seed.unwrap_or(1),
     }
 }
 
@@ -77,7 +82,7 @@ fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
         .with("--what", args.what)
         .with("--steps", args.steps)
         .with("--orders", args.orders)
-        .with("--seed", args.seed)
+        .maybe("--seed", args.seed)
         .pair("--range", args.range, ",");
     let of = &args.photographs;
     asked(of, options).of_folder("locate", &of.dir, scene)

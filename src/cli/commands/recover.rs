@@ -35,7 +35,7 @@ pub(in crate::cli) fn execute(args: &RecoverArgs, console: Console) -> Result<Ou
             named.clone()
         }
     };
-    let options = recover_options::checked(args, &methods(0))?;
+    let options = recover_options::checked(args, &methods(0), 0)?;
     refuse_repetition(&named)?;
     if let Some(camera_side) = &args.camera_side {
         return recover_own::execute(args, camera_side, &named, options, console);
@@ -75,11 +75,12 @@ pub(in crate::cli) fn execute(args: &RecoverArgs, console: Console) -> Result<Ou
             beside.join("; ")
         ));
     }
-    let methods = methods(recover_memory::elements(args, &modelled));
+    let elements = recover_memory::elements(args, &modelled);
+    let methods = methods(elements);
     let own = record.as_ref().filter(|_| has_own_errors(args, dir));
     let gains = own.map(|record| with_gains(args, &record.origin, &methods, console));
     let args = gains.as_ref().unwrap_or(args);
-    recover_options::checked(args, &methods)?;
+    recover_options::checked(args, &methods, elements)?;
     let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
     let request = RecoveryRequest {
         args,

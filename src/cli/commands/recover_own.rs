@@ -64,7 +64,7 @@ pub(super) fn execute(
         let cause = format!("{method} compares neighbours, and nothing says how the elements lie");
         return Err(Failure::new(cause, "give --elements NxM, or use joint"));
     }
-    recover_options::checked(args, &methods)?;
+    recover_options::checked(args, &methods, elements)?;
     let of = PhotographSize {
         name: phi_file.display().to_string(),
         grid: args.pixels,

@@ -77,6 +77,21 @@ impl Values {
         self.maybe(name)?.ok_or_else(none)
     }
 
+    /// Refuses values of these options other than they have unless given: beside those of the
+    /// others they would change nothing.
+    ///
+    /// # Errors
+    /// The option, and `why`.
+    pub fn refuse_idle(&self, names: &[&str], why: &str) -> Result<(), OptionError> {
+        let own = |(option, values): &(&'static Opt, Vec<String>)| {
+            let usual = option.default.iter().flat_map(|d| d.split(','));
+            let is_idle = names.contains(&option.name) && !usual.eq(values.iter());
+            (option.name, is_idle)
+        };
+        let options: Vec<_> = self.0.iter().map(own).collect();
+        OptionError::refuse_idle(&options, why)
+    }
+
     /// Numbers of checks or elements a side, sorted, each once.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ use crate::cli::load_run::{read_photographs, read_stderr};
 use crate::cli::progress::clocked;
 use crate::cli::run_folder::{PHI, STDERR};
 use crate::folder::Record;
-use crate::lab::{Attempt, Certainty, Noise, inverted, recover_with_picards};
+use crate::lab::{Attempt, Certainty, Integration, Noise, inverted, recover_with_picards};
 use crate::model::{Effort, MatrixModel};
 use crate::recovery::{Method, Options, Picard};
 use crate::scene::Scene;
@@ -68,7 +68,8 @@ impl RecoveryRequest<'_> {
             }
         };
         let occlusion = args.occlusion.occlusion();
-        let by = (args.integration, Effort::FINEST);
+        let integration = args.integration.unwrap_or(Integration::Quadrature);
+        let by = (integration, Effort::FINEST);
         let model = clocked(self.console, &format!("model of {}", scene.name), || {
             inverted(scene, args.kernel, args.elements, occlusion, by)
         })?;

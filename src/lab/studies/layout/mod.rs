@@ -163,6 +163,9 @@ pub(super) const STUDY: Registered = Registered {
             (to - from).length()
         });
         let prior: String = values.one("prior")?;
+        if prior != "smooth" {
+            values.refuse_idle(&["length"], "only --prior smooth has one")?;
+        }
         let length = values.maybe("length")?.or(diagonal.map(|d| 0.25 * d));
         let mut unsure = Vec::new();
         for name in ["hinge", "offset", "aim"] {

@@ -17,8 +17,7 @@ mod search;
 mod tasks;
 
 use super::registered::{Registered, prepared};
-use crate::lab::options::Opt;
-use crate::lab::options::OptionError;
+use crate::lab::options::{Opt, OptionError, Values};
 use crate::lab::studies::subject::{PICTURES, Subject};
 use crate::lab::uncertainty::noise_law::NoiseLaw;
 use crate::num::named::Named;
@@ -83,6 +82,7 @@ pub(super) const STUDY: Registered = Registered {
     ],
     prepare: |scene, values| {
         let kinds: Vec<String> = values.list("kinds")?;
+        refuse_idle(values, &kinds)?;
         let spots: Vec<usize> = values.list("spots")?;
         let all = scene.laser.spots.len();
         if let Some(more) = spots.iter().find(|n| **n > all) {
@@ -121,3 +121,20 @@ pub(super) const STUDY: Registered = Registered {
         Ok(prepared(OccluderTasks::new(scene, plan)?))
     },
 };
+
+/// Refuses what changes nothing of these `kinds`.
+fn refuse_idle(values: &Values, kinds: &[String]) -> Result<(), OptionError> {
+    if values.one::<u64>("samples")? == 0 {
+        let why = "--samples 0 takes no photographs through a sensor";
+        values.refuse_idle(&["sensor", "exposure", "frames"], why)?;
+    }
+    if !kinds.iter().any(|kind| kind == Kind::Random.name()) {
+        let why = "there is no random mask among --kinds";
+        values.refuse_idle(&["cells"], why)?;
+    }
+    if kinds.iter().all(|kind| kind == Kind::None.name()) {
+        let why = "there is no occluder among --kinds";
+        values.refuse_idle(&["size", "height", "search", "misplaced"], why)?;
+    }
+    Ok(())
+}
