@@ -8,7 +8,7 @@ use super::chosen::beforehand;
 use super::fit::Judged;
 use crate::lab::comparison::gains::drifting;
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
+use crate::recovery::{Choice, Method, Patterns, Recovered, Sum, Weighting};
 use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
@@ -280,10 +280,16 @@ fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
     (above > GAP && !known).then(|| {
         let above = figure(above, 2);
         match found.method {
-            Method::JointTwoValued => format!(
-                "no change of one or two elements fits better, but not every pattern was tried: χ² of \
-                 another may be up to {above} lower. Compare with joint, or give the --levels"
-            ),
+            Method::JointTwoValued => {
+                let more = match found.choice {
+                    Choice::Given => "",
+                    _ => ", or give the --levels",
+                };
+                format!(
+                    "no change of one or two elements fits better, but not every pattern was tried: χ² of \
+                     another may be up to {above} lower. Compare with joint{more}"
+                )
+            }
             _ => format!(
                 "the search ended before it was proved to be at the minimum: χ² may be {above} lower. \
                  Scale the photographs, or use joint-unbounded"
