@@ -72,8 +72,8 @@ pub(in crate::cli) struct RecoverArgs {
     pub elements: Option<[usize; 2]>,
     #[command(flatten)]
     pub occlusion: OcclusionArgs,
-    /// How the model of the joint methods integrates, quadrature unless given; the published kernel,
-    /// more than 1024 elements and the other methods are by centres
+    /// How the model of the joint methods integrates, quadrature unless given; the published
+    /// kernel, more than 1024 elements and the other methods are by centres
     #[arg(long, value_parser = choice::named::<Integration>())]
     pub integration: Option<Integration>,
     /// How tsvd, tikhonov and tikhonov-gradient choose their parameter; discrepancy unless given

@@ -1,5 +1,6 @@
 //! Pictures of two levels: patterns, how likely each is, and their sums.
 
+mod alike;
 mod apart;
 mod branch;
 mod enumerated;

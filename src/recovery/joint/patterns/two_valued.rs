@@ -17,13 +17,12 @@
 //! are not given, these errors and the levels allow for elements that differ from their level, as
 //! far as the photographs do ([`super::spread`]).
 
+use super::alike::{settled_pattern, where_alike};
 use super::fields::{self, Fields};
-use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
-use super::pattern_sums::Summed;
 use super::scaled::Scaled;
-use super::{enumerated, levels, neighbours, pattern_lattice, sampled, spread};
+use super::{enumerated, pattern_lattice, sampled, spread};
 use crate::recovery::joint::coordinates::Coordinates;
 use crate::recovery::joint::operator::scale;
 use crate::recovery::{
@@ -36,15 +35,9 @@ const MOST_SAMPLED: usize = 400;
 const DRAWS: f64 = 1.6e9;
 const FEWEST: f64 = 2000.0;
 const MOST: f64 = 400_000.0;
-/// The picture is the likeliest pattern where neighbours may be alike if it has at least this
-/// probability there, and the photographs are likelier by at least e to this if they are alike.
-const SETTLED: f64 = 0.5;
-const TELLS: f64 = 3.0;
 /// Probability of the likeliest patterns together, of which the picture is one: what is likelier of
 /// each element need not fit the photographs as a whole.
 const CREDIBLE: f64 = 0.95;
-/// Share of the probability that must be summed pattern by pattern for another prior.
-const LISTED: f64 = 0.99;
 
 /// Bytes that this method takes of so many elements beside what every joint method does, at most:
 /// two matrices of n × n numbers for each lattice that is held.
@@ -59,68 +52,9 @@ pub fn two_valued_bytes(elements: usize) -> f64 {
     16.0 * held as f64 * (elements as f64).powi(2)
 }
 
-/// Whether nearly all patterns that count were summed one by one: of those that were drawn the few
-/// that another prior prefers say nothing.
-fn is_listed(sum: Sum) -> bool {
-    match sum {
-        Sum::Exhaustive => true,
-        Sum::Sampled { listed, .. } => sum.converged() && listed >= LISTED,
-    }
-}
-
 /// Patterns of n elements that are drawn.
 fn draws(n: usize) -> usize {
     (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize
-}
-
-/// Where neighbours may be alike: what the patterns' evidence gains, and the patterns, if known. If
-/// nearly all were summed one by one, those of single elements are weighed anew. Of such as were
-/// drawn the few that neighbours prefer say nothing: others are drawn, those of `known` listed.
-fn where_alike(
-    likelihood: &PatternLikelihood<'_>,
-    (sizes, known): (&[Fields], &[Vec<bool>]),
-    summed: &Summed,
-) -> Result<(Option<f64>, Option<Summed>), RecoveryError> {
-    let prior = sizes.last().and_then(|single| single.prior.as_ref());
-    let reweighed = neighbours::Reweighed::new(prior, &summed.patterns.weights);
-    let quadrature = levels::rule();
-    let of = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-    let anew = is_listed(summed.sum).then(|| reweighed.sum(of)).flatten();
-    let own = reweighed
-        .gained()
-        .zip(anew)
-        .map(|(gained, patterns)| Summed {
-            patterns,
-            log_evidence: summed.log_evidence + gained,
-            sum: summed.sum,
-            best: summed.best.clone(),
-        });
-    let draws = draws(likelihood.r.ncols());
-    let found = fields::sum(likelihood, sizes, known, (draws, own))?;
-    Ok(match found.filter(|found| found.sum.converged()) {
-        Some(found) => (Some(found.log_evidence - summed.log_evidence), Some(found)),
-        // What was drawn for fair coins tells no evidence of another prior.
-        None => {
-            let known = sizes.is_empty() || is_listed(summed.sum);
-            (reweighed.gained().filter(|_| known), None)
-        }
-    })
-}
-
-/// The likeliest pattern where neighbours may be alike, if that is settled; `even` are the sums
-/// where every pattern is as likely.
-fn settled_pattern(
-    gained: Option<f64>,
-    alike: Option<&Summed>,
-    even: &Summed,
-) -> Option<Vec<bool>> {
-    let (light, share) = alike?.patterns.likeliest()?;
-    let doubted = if even.sum.converged() {
-        0.0
-    } else {
-        libm::log(fields::DOUBTED)
-    };
-    (share >= SETTLED && gained >= Some(TELLS + doubted)).then(|| light.clone())
 }
 
 pub(in crate::recovery) fn recover(
@@ -215,7 +149,7 @@ pub(in crate::recovery) fn recover(
     let (gained, alike) = match &summed {
         Some(summed) => {
             known.push(best.light.clone());
-            where_alike(&likelihood, (&sizes, &known), summed)?
+            where_alike(&likelihood, (&sizes, &known), (summed, draws(n)))?
         }
         None => (None, None),
     };

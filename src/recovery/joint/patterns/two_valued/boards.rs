@@ -5,6 +5,8 @@ use nalgebra::DVector;
 use super::tests::noisy;
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
+use crate::recovery::joint::patterns::levels::{self, ALL};
+use crate::recovery::joint::patterns::neighbours;
 use crate::recovery::recover;
 
 /// Draws of the noise for each board and noise. Of 40, one may miss.
