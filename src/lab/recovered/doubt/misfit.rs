@@ -196,7 +196,7 @@ fn contradiction(best: &Attainable, sent_on: Option<&str>) -> String {
          ({told}); {any}.{beside} The scene is not what was photographed, or the standard errors are too \
          small. Check{exact} geometry, order and orientation of the frames, unit and --stderr; more \
          --elements where they are coarse; --frame-constant or --background for other light. Of a \
-         scene check what stands in the way, in it and by its light (--occluder-light); and give \
+         scene check what stands in the way, and the light it sends on (--occluder-light); give \
          --integration centres where elements were taken at their centres, as `phicam model` does"
     )
 }
