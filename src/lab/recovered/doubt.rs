@@ -8,7 +8,7 @@ use super::chosen::beforehand;
 use super::fit::Judged;
 use crate::lab::comparison::gains::drifting;
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Choice, Method, Patterns, Recovered, Sum, Weighting};
+use crate::recovery::{Choice, Method, Patterns, Recovered, Setting, Sum, Weighting};
 use contested::contested;
 pub(super) use contested::{TELLS, contest};
 use errors::{
@@ -157,9 +157,10 @@ fn noise(found: &Recovered) -> Option<String> {
 /// Most elements where a bound holds them.
 fn on_bounds(found: &Recovered) -> Option<String> {
     let (count, all) = (found.bounded(), found.reflectance.len());
+    let can = Setting::Bands.means_something_to(found.method);
     let more = match found.bands {
-        Some(_) => "",
-        None => ", or ask for --bands",
+        None if can => ", or ask for --bands",
+        _ => "",
     };
     (count as f64 > MOST * all as f64).then(|| {
         format!(

@@ -45,14 +45,20 @@ pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
         ));
     }
     if let Some(within) = fit.within_integration.filter(|_| fit.is_open()) {
-        let counted = match &judged.moved {
-            Some(_) => "count the noise and the last steps of these integrals",
-            None => "know of noise alone: they are TOO SMALL",
+        let has_errors = found.standard_error.is_some() || found.bands.is_some();
+        let errors = match &judged.moved {
+            Some(_) => {
+                " The errors of the picture count the noise and the last steps of these integrals."
+            }
+            None if has_errors => {
+                " The errors of the picture know of noise alone: they are TOO SMALL."
+            }
+            None => "",
         };
         return Some(format!(
             "whether it fits CANNOT BE TOLD: it differs from the photographs by more than their noise ({}), \
-             but by no more than the integrals of the model may be off (with that taken off χ²/dof {}). The \
-             errors of the picture {counted}. More --elements are integrated more finely",
+             but by no more than the integrals of the model may be off (with that taken off χ²/dof {}).{errors} More \
+             --elements are integrated more finely",
             told(fit),
             significant(within, 3)
         ));

@@ -151,3 +151,27 @@ fn errors_that_do_not_go_with_the_light_are_told() {
     // Of one in a hundred χ² is refuted too, which is told instead.
     assert!(grows >= 18, "{grows}");
 }
+
+/// Of photographs that are noise most elements sit on a bound: bands are offered to decide how
+/// much that says where the method has any, and to no other.
+#[test]
+fn bands_are_offered_where_there_are_any() {
+    let camera = Matrix::from_fn(60, 9, |p, j| 1.5 + libm::sin((p * (2 * j + 3)) as f64));
+    let model = MatrixModel::of_sides(camera, Matrix::from_element(9, 1, 1.0), [3, 3]).unwrap();
+    let exact = &model.camera_side * Matrix::from_element(9, 1, 0.5);
+    let stderr = exact.map(|_| 300.0);
+    for (method, can) in [(Method::Joint, true), (Method::JointTv, false)] {
+        let mut told = 0;
+        for seed in 0..6 {
+            let mut normal = normal(seed);
+            let phi = exact.zip_map(&stderr, |x, s| x + s * normal()[0]);
+            let known = (&stderr, Certainty::STATED);
+            let object = recovered(&model, &phi, known, (method, &Options::default()));
+            for doubt in object.warnings.iter().filter(|w| w.contains("on a bound")) {
+                assert_eq!(doubt.contains("--bands"), can, "{method}: {doubt}");
+                told += 1;
+            }
+        }
+        assert!(told > 0, "{method}");
+    }
+}
