@@ -20,6 +20,7 @@ pub mod memory;
 mod reading;
 mod room;
 mod temporary;
+mod together;
 
 pub use digest::{digest, digest_of, hex};
 pub use error::StoreError;
@@ -29,6 +30,7 @@ pub use reading::{ReadError, ReadFault, open, read, start};
 pub use room::{Room, threads_that_fit};
 use temporary::temporary;
 pub use temporary::{is_abandoned, machine};
+pub use together::write_together;
 
 /// The folder that holds `path`; a bare file name lives in the current one.
 fn folder_of(path: &Path) -> &Path {

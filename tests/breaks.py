@@ -3706,6 +3706,24 @@ BREAKS = [
         "lab::recovered::doubt::tests::errors::bands_are_offered_where_there_are_any",
         51,
     ),
+    Break(
+        "No file of a result takes the place of an older one's before all are written",
+        "src/store/together.rs",
+        "let stale = fill(staged.path())?;",
+        "let stale = fill(dir)?;",
+        "lib",
+        "store::tests::a_result_that_cannot_be_written_leaves_the_older_one_and_nothing_else",
+        52,
+    ),
+    Break(
+        "What a killed process had written of a result goes with the next",
+        "src/cli/cleanup.rs",
+        "let removed = if is_abandoned && path.is_dir() {",
+        "let removed = if !is_abandoned && path.is_dir() {",
+        "cli",
+        "replacing::what_a_killed_recovery_had_written_is_removed_by_the_next",
+        52,
+    ),
 ]
 
 

@@ -39,10 +39,16 @@ pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str) -> bool) -> Result<()
     };
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
         let name = path.file_name().and_then(OsStr::to_str).unwrap_or("");
-        if !is_abandoned(&path) && !ours(name) {
+        let is_abandoned = is_abandoned(&path);
+        if !is_abandoned && !ours(name) {
             continue;
         }
-        match fs::remove_file(&path) {
+        let removed = if is_abandoned && path.is_dir() {
+            fs::remove_dir_all(&path)
+        } else {
+            fs::remove_file(&path)
+        };
+        match removed {
             // Another process was faster.
             Err(e) if e.kind() == ErrorKind::NotFound => {}
             other => other.map_err(|e| irremovable(&path, &e))?,

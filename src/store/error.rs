@@ -3,6 +3,8 @@
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use super::temporary::lasting;
+
 /// Why a file or a folder could not be written. Each message names the path, the cause and the
 /// cure.
 #[derive(Debug, thiserror::Error)]
@@ -37,7 +39,7 @@ pub enum StoreError {
 
 impl StoreError {
     pub(super) fn new(path: &Path, source: io::Error) -> Self {
-        let path = path.to_path_buf();
+        let path = lasting(path);
         let why = match source.kind() {
             ErrorKind::NotADirectory => {
                 let path = first_file_in(&path);

@@ -1,6 +1,7 @@
 //! Temporary files, and whose they are.
 
-use std::path::Path;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 use std::{fs, io};
@@ -11,11 +12,33 @@ use super::reading::read;
 /// private to its owner). Its name says whose it is: `.phicam-MACHINE-PROCESS-RANDOM.part`.
 pub(super) fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    let prefix = format!("{PREFIX}{}-{}-", machine(), std::process::id());
+    let prefix = prefix();
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
+}
+
+/// A folder in `folder`, named as a temporary file is, which goes with what it holds when it is
+/// dropped.
+pub(super) fn temporary_folder(folder: &Path) -> io::Result<tempfile::TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix()).suffix(SUFFIX).tempdir_in(folder)
+}
+
+/// How names of what this process writes begin.
+fn prefix() -> String {
+    format!("{PREFIX}{}-{}-", machine(), std::process::id())
+}
+
+/// The path without the temporary folders in it: where the file is to be.
+pub(super) fn lasting(path: &Path) -> PathBuf {
+    let is_temporary = |name: &OsStr| name.to_str().is_some_and(is_temporary);
+    path.iter().filter(|name| !is_temporary(name)).collect()
+}
+
+fn is_temporary(name: &str) -> bool {
+    name.starts_with(PREFIX) && name.ends_with(SUFFIX)
 }
 
 pub(super) const PREFIX: &str = ".phicam-";
@@ -57,11 +80,12 @@ fn found_machine() -> String {
     format!("{name}_{start}_{space}")
 }
 
-/// Whether the file is one that [`write_whole`](super::write_whole) was writing when its process
-/// ended: by the process's number if it ran on this machine, else by its age.
+/// Whether the file or folder is one that [`write_whole`](super::write_whole) or
+/// [`write_together`](super::write_together) was writing when its process ended: by the process's
+/// number if it ran on this machine, else by its age.
 pub fn is_abandoned(path: &Path) -> bool {
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
-    if !name.starts_with(PREFIX) || !name.ends_with(SUFFIX) {
+    if !is_temporary(name) {
         return false;
     }
     if let Some(lives) = process_lives(name) {

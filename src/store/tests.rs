@@ -156,3 +156,80 @@ fn what_a_dead_process_left_is_told_from_what_a_living_one_writes() {
         assert!(!is_abandoned(&named(name.to_owned())));
     }
 }
+
+/// A folder with two files of an older result and one of somebody else.
+fn older() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["joint.npy", "joint.bias.npy", "notes.txt"] {
+        fs::write(dir.path().join(name), "older").unwrap();
+    }
+    dir
+}
+
+/// The files in `dir` with what is in them, in the order of their names.
+fn told(dir: &Path) -> Vec<(String, String)> {
+    let mut names = names(dir);
+    names.sort();
+    let read = |name: &String| fs::read_to_string(dir.join(name)).unwrap_or_default();
+    let texts: Vec<String> = names.iter().map(read).collect();
+    names.into_iter().zip(texts).collect()
+}
+
+#[test]
+fn files_of_one_result_take_the_place_of_the_older_ones_together() {
+    let dir = older();
+    write_together(dir.path(), |staged| {
+        fs::create_dir(staged.join("copies")).unwrap();
+        write_whole(&staged.join("copies/a.ply"), |w| w.write_all(b"newer"))?;
+        write_whole(&staged.join("joint.npy"), |w| w.write_all(b"newer"))?;
+        let there = fs::read_to_string(dir.path().join("joint.npy")).unwrap();
+        assert_eq!(there, "older", "nothing is moved before all is written");
+        Ok::<_, StoreError>(vec!["joint.bias.npy".to_owned(), "not.there".to_owned()])
+    })
+    .unwrap();
+    let [none, newer, older] = ["", "newer", "older"].map(str::to_owned);
+    let due = [
+        ("copies", none),
+        ("joint.npy", newer.clone()),
+        ("notes.txt", older),
+    ];
+    assert_eq!(
+        told(dir.path()),
+        due.map(|(name, text)| (name.to_owned(), text))
+    );
+    let copies = [("a.ply".to_owned(), newer)];
+    assert_eq!(told(&dir.path().join("copies")), copies);
+}
+
+#[test]
+fn a_result_that_cannot_be_written_leaves_the_older_one_and_nothing_else() {
+    let dir = older();
+    let before = told(dir.path());
+    let full = write_together(dir.path(), |staged| {
+        write_whole(&staged.join("joint.npy"), |w| w.write_all(b"newer"))?;
+        write_whole(&staged.join("large.npy"), |_| {
+            Err(ErrorKind::StorageFull.into())
+        })?;
+        Ok::<_, StoreError>(vec!["joint.bias.npy".to_owned()])
+    });
+    // It names the file that was to be, not where it was written first.
+    let large = dir.path().join("large.npy");
+    assert!(
+        matches!(&full, Err(StoreError::Failed { path, .. }) if *path == large),
+        "{full:?}"
+    );
+    assert_eq!(told(dir.path()), before);
+    // A folder in the way of the last file stops them all.
+    fs::create_dir(dir.path().join("x.npy")).unwrap();
+    let before = told(dir.path());
+    let stopped = write_together(dir.path(), |staged| {
+        write_whole(&staged.join("joint.npy"), |w| w.write_all(b"newer"))?;
+        write_whole(&staged.join("x.npy"), |w| w.write_all(b"newer"))?;
+        Ok::<_, StoreError>(vec!["joint.bias.npy".to_owned()])
+    });
+    assert!(
+        matches!(stopped, Err(StoreError::NotAFile { .. })),
+        "{stopped:?}"
+    );
+    assert_eq!(told(dir.path()), before);
+}

@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::os::unix::fs::MetadataExt;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use crate::workspace::{Workspace, assert_same};
 
@@ -215,15 +215,38 @@ fn the_files_of_a_recovery_outlive_one_that_is_not_written() {
         "{:?}",
         before.keys()
     );
-    // A folder where the first figure is to be.
-    let obstacle = workspace.path("mine/picard.svg");
-    fs::remove_file(&obstacle).unwrap();
-    fs::create_dir(&obstacle).unwrap();
-    let ended = workspace.phicam(line).exits(2);
-    assert!(ended.stderr.contains("picard.svg"), "{}", ended.account());
-    fs::remove_dir(&obstacle).unwrap();
-    workspace.write("mine/picard.svg", &before["picard.svg"]);
-    assert_same(&before, &workspace.contents("mine"), line);
+    // A folder where the first file is to be, or one of the last: none of another picture's takes
+    // the place of its own.
+    for name in ["picard.svg", "joint.choice.json", "overview.png"] {
+        let obstacle = workspace.path("mine").join(name);
+        fs::remove_file(&obstacle).unwrap();
+        fs::create_dir(&obstacle).unwrap();
+        let other = "recover done --method joint -o mine --frame-constant";
+        let ended = workspace.phicam(other).exits(2);
+        assert!(ended.stderr.contains(name), "{}", ended.account());
+        fs::remove_dir(&obstacle).unwrap();
+        workspace.write(&format!("mine/{name}"), &before[name]);
+        assert_same(&before, &workspace.contents("mine"), name);
+    }
+}
+
+/// What a process that was killed had written goes with the next result.
+#[test]
+fn what_a_killed_recovery_had_written_is_removed_by_the_next() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam(QUICK).exits(0);
+    let left = workspace.path("mine/.phicam-elsewhere0-1-Xy.part");
+    fs::create_dir_all(&left).unwrap();
+    fs::write(left.join("joint.npy"), "half").unwrap();
+    let folder = fs::File::open(&left).unwrap();
+    folder
+        .set_modified(SystemTime::now() - Duration::from_secs(7200))
+        .unwrap();
+    let _ = workspace
+        .phicam("recover done --method joint -o mine")
+        .exits(0);
+    assert!(!left.exists());
+    assert!(workspace.path("mine/joint.npy").exists());
 }
 
 #[test]

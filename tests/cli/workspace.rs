@@ -13,7 +13,7 @@ pub(crate) struct Workspace {
 }
 
 /// No command of these tests takes longer.
-const LONG: Duration = Duration::from_secs(300);
+const LONG: Duration = Duration::from_secs(900);
 
 /// `phicam`, started by a shell that has done `limit` before.
 fn limited(limit: &str) -> assert_cmd::Command {

@@ -7,10 +7,9 @@ use super::recovered::of_surface;
 use super::spelled::Spelled;
 use super::unexplained::{asked, elements, photographs, scene_of};
 use crate::cli::args::CalibrateArgs;
-use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::{Failure, NOTHING_KEPT};
-use crate::cli::findings::deliver;
+use crate::cli::findings;
 use crate::cli::output;
 use crate::cli::process::pool;
 use crate::cli::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
@@ -24,6 +23,7 @@ use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
 use crate::report::Invocation;
 use crate::scene::Scene;
+use crate::store::write_together;
 
 pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
     let of = &args.photographs;
@@ -66,9 +66,12 @@ pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<
         agrees: calibration.is_found(),
     };
     let again = invocation(args, &plan.free, &scene);
-    let outcome = deliver("calibration", &found, &output, &again, of.json)?;
-    write_copies(&output, &scene)?;
-    write_picture(&output, &calibration)?;
+    write_together(&output, |staged| {
+        findings::write("calibration", &found, staged, &again)?;
+        write_copies(staged, &scene)?;
+        write_picture(staged, &calibration)
+    })?;
+    let outcome = findings::tell(&found, of.json)?;
     console.say(format!(
         "{0}: written; scene.toml there is the calibrated scene, {2}.npy the picture by it, whose errors have those of \
          the geometry in: `phicam recover {0}{1}` compares other pictures, whose errors have not",
@@ -82,8 +85,10 @@ pub(in crate::cli) fn execute(args: &CalibrateArgs, console: Console) -> Result<
 /// Writes the picture with the calibrated geometry as `phicam recover` names its files,
 /// joint-gp.npy and joint-gp.stderr.npy (nv × nu), joint-gp.covariance.npy (own elements × elements
 /// of all surfaces) where it is made, all with the errors of the geometry; joint-gp-0, … where
-/// several surfaces are hidden. Numbers are those of `grids` in calibration.json.
-fn write_picture(folder: &Path, calibration: &Calibration) -> Result<(), Failure> {
+/// several surfaces are hidden. Numbers are those of `grids` in calibration.json. Returns the names
+/// of those that are not made.
+fn write_picture(folder: &Path, calibration: &Calibration) -> Result<Vec<String>, Failure> {
+    let mut stale = Vec::new();
     let mut first = 0;
     for (i, grid) in calibration.grids.iter().enumerate() {
         let [nu, nv] = grid.count;
@@ -95,12 +100,12 @@ fn write_picture(folder: &Path, calibration: &Calibration) -> Result<(), Failure
         }
         let own = name("covariance.npy");
         match &calibration.covariance {
-            Some(all) => npy::write(&folder.join(own), &all.rows(first, nu * nv).into_owned())?,
-            None => remove_named(folder, &[&own])?,
+            Some(all) => npy::write(&folder.join(&own), &all.rows(first, nu * nv).into_owned())?,
+            None => stale.push(own),
         }
         first += nu * nv;
     }
-    Ok(())
+    Ok(stale)
 }
 
 /// With what the same photographs are recovered by the calibrated scene.

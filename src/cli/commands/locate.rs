@@ -5,7 +5,7 @@ use super::unexplained::{asked, elements, photographs, scene_of};
 use crate::cli::args::LocateArgs;
 use crate::cli::console::Console;
 use crate::cli::failure::{Failure, NOTHING_KEPT};
-use crate::cli::findings::deliver;
+use crate::cli::findings;
 use crate::cli::output;
 use crate::cli::process::pool;
 use crate::cli::run_folder::{LOCATED, RunFolder};
@@ -16,6 +16,7 @@ use crate::lab::options::OptionError;
 use crate::lab::{Found, LocatedPlan, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
+use crate::store::write_together;
 
 /// The range unless given: part of the distance to the view, and degrees.
 const PART: f64 = 0.3;
@@ -47,7 +48,11 @@ pub(in crate::cli) fn execute(args: &LocateArgs, console: Console) -> Result<Out
         agrees: located.is_found(),
     };
     let again = invocation(args, &scene);
-    let outcome = deliver("locate", &found, &output, &again, of.json)?;
+    write_together(&output, |staged| {
+        findings::write("locate", &found, staged, &again)?;
+        Ok::<_, Failure>(Vec::new())
+    })?;
+    let outcome = findings::tell(&found, of.json)?;
     console.say(format!("{}: written", output.display()));
     Ok(outcome)
 }

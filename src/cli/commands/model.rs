@@ -6,7 +6,6 @@ use serde_json::json;
 
 use crate::cli::Outcome;
 use crate::cli::args::ModelArgs;
-use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -17,7 +16,7 @@ use crate::jobs::need;
 use crate::lab::Integration;
 use crate::matrix::{Matrix, npy};
 use crate::model::{Extent, MatrixModel, converged};
-use crate::store::ensure_writable;
+use crate::store::write_together;
 
 pub(in crate::cli) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_any_scene(&args.scene)?;
@@ -106,23 +105,23 @@ pub(super) fn write(
     phi: Option<&Matrix>,
     z: Option<&Matrix>,
 ) -> Result<(), Failure> {
-    let folder = dir.join(MODEL);
-    ensure_writable(&folder)?;
-    for (name, matrix) in [
-        ("g12.npy", &model.g12),
-        ("g23.npy", &model.g23),
-        ("laser_side.npy", &model.laser_side),
-        ("camera_side.npy", &model.camera_side),
-    ] {
-        npy::write(&folder.join(name), matrix)?;
-    }
-    match phi {
-        Some(phi) => npy::write(&folder.join("phi.npy"), phi)?,
-        None => remove_named(&folder, &["phi.npy"])?,
-    }
-    match z {
-        Some(z) => Ok(npy::write(&folder.join(Z), z)?),
-        // Deviations from another model are none from this one.
-        None => remove_named(&folder, &[Z]),
-    }
+    write_together(&dir.join(MODEL), |folder| {
+        let matrices = [
+            ("g12.npy", Some(&model.g12)),
+            ("g23.npy", Some(&model.g23)),
+            ("laser_side.npy", Some(&model.laser_side)),
+            ("camera_side.npy", Some(&model.camera_side)),
+            ("phi.npy", phi),
+            // Deviations from another model are none from this one.
+            (Z, z),
+        ];
+        let mut stale = Vec::new();
+        for (name, matrix) in matrices {
+            match matrix {
+                Some(matrix) => npy::write(&folder.join(name), matrix)?,
+                None => stale.push(name.to_owned()),
+            }
+        }
+        Ok(stale)
+    })
 }

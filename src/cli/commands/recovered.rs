@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use serde_json::json;
 
 use crate::cli::Outcome;
-use crate::cli::cleanup::{remove_abandoned, remove_named};
+use crate::cli::cleanup::remove_abandoned;
 use crate::cli::console::{Console, complain};
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::{StepGuard, stop_flag};
@@ -18,7 +18,7 @@ use crate::matrix::{Matrix, npy};
 use crate::recovery::{Method, Picard, RecoveryError};
 use crate::report::{self, Panel};
 use crate::scene::{Division, Scene};
-use crate::store::ensure_writable;
+use crate::store::{ensure_writable, write_together};
 use crate::transport::Control;
 
 /// The objects that were recovered. A method that cannot work is reported, one of those `named` in
@@ -114,14 +114,26 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     ensure_writable(folder)?;
     remove_abandoned(folder)?;
-    let mut stale = vec!["picard-joint.csv", "picard-joint.svg"];
+    write_together(folder, |staged| fill(staged, scene, objects, picards))
+}
+
+/// Writes into `folder` what [`write`] does; returns the names of the files that an earlier
+/// recovery may have left and this one has not.
+fn fill(
+    folder: &Path,
+    scene: Option<&Scene>,
+    objects: &[RecoveredObject],
+    picards: &[Picard],
+) -> Result<Vec<String>, Failure> {
+    let mut stale = ["picard-joint.csv", "picard-joint.svg"]
+        .map(str::to_owned)
+        .to_vec();
     for picard in picards {
         for (name, text) in report::finding_files(&picard.describe()) {
             stale.retain(|old| *old != name);
             output::write(&folder.join(name), text)?;
         }
     }
-    remove_named(folder, &stale)?;
     let mut surfaces: Vec<&str> = Vec::new();
     for object in objects {
         if !surfaces.contains(&object.surface.as_str()) {
@@ -139,12 +151,10 @@ pub(super) fn write(
         let known = objects.iter().find(|o| o.surface == *surface);
         let shares = known.and_then(|o| o.determined_share.as_ref());
         if shares.is_none() {
-            let stale = ["npy", "png"].map(|what| named("determined", what));
-            remove_named(folder, &stale.each_ref().map(String::as_str))?;
+            stale.extend(["npy", "png"].map(|what| named("determined", what)));
         }
         if known.is_some_and(|o| o.truth.is_none()) {
-            let stale = ["npy", "png"].map(|what| named("truth", what));
-            remove_named(folder, &stale.each_ref().map(String::as_str))?;
+            stale.extend(["npy", "png"].map(|what| named("truth", what)));
         }
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
@@ -190,7 +200,7 @@ pub(super) fn write(
                 let name = named(method, &format!("{what}.npy"));
                 match matrix {
                     Some(matrix) => npy::write(&folder.join(name), &matrix)?,
-                    None => remove_named(folder, &[&name])?,
+                    None => stale.push(name),
                 }
             }
         }
@@ -199,7 +209,7 @@ pub(super) fn write(
             output::write(&file("overview", "png"), png)?;
         }
     }
-    Ok(())
+    Ok(stale)
 }
 
 /// What a name of a file has behind that of its method: the number of the surface, where there are

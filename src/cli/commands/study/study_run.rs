@@ -10,7 +10,7 @@ use crate::cli::cleanup::remove_named;
 use crate::cli::commands::tasks::{Tasks, compute, identity, request};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::findings::deliver;
+use crate::cli::findings;
 use crate::cli::interrupt::{SignalGuard, control};
 use crate::cli::output;
 use crate::cli::process::{pool, process, version};
@@ -19,7 +19,7 @@ use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
 use crate::lab::{AnyStudy, Sharing, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
-use crate::store::ensure_writable;
+use crate::store::{ensure_writable, write_together};
 use crate::transport::Control;
 
 /// A study, checked and ready.
@@ -199,7 +199,11 @@ impl Tasks for StudyRun {
         if !self.replace {
             asked::refuse_other(folder, &self.asked())?;
         }
-        asked::keep(folder, &self.asked())?;
-        deliver(self.name, &found, folder, &self.invocation, self.json)
+        write_together(folder, |staged| {
+            asked::keep(staged, &self.asked())?;
+            findings::write(self.name, &found, staged, &self.invocation)?;
+            Ok::<_, Failure>(Vec::new())
+        })?;
+        findings::tell(&found, self.json)
     }
 }
