@@ -18,7 +18,7 @@ use crate::matrix::{Matrix, npy};
 use crate::recovery::{Method, Picard, RecoveryError};
 use crate::report::{self, Panel};
 use crate::scene::{Division, Scene};
-use crate::store::{ensure_writable, write_together};
+use crate::store::write_together;
 use crate::transport::Control;
 
 /// The objects that were recovered. A method that cannot work is reported, one of those `named` in
@@ -112,7 +112,6 @@ pub(super) fn write(
     objects: &[RecoveredObject],
     picards: &[Picard],
 ) -> Result<(), Failure> {
-    ensure_writable(folder)?;
     remove_abandoned(folder)?;
     write_together(folder, |staged| fill(staged, scene, objects, picards))
 }
