@@ -1,10 +1,11 @@
 //! Files of one result, which take the place of an older one's together.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::temporary::temporary_folder;
-use super::{AT_WORK, StoreError, ensure_writable, flush, is_missing};
+use super::{AT_WORK, StoreError, ensure_writable, flush_folder, folder_of, is_missing};
 
 /// Writes the files of one result into the folder `dir`: `fill` writes them into an empty folder
 /// in it and returns the names of those in `dir` that the result has not; these are then removed,
@@ -22,16 +23,17 @@ pub fn write_together<E: From<StoreError>>(
     let staged = temporary_folder(dir).map_err(|e| StoreError::new(dir, e))?;
     let stale = fill(staged.path())?;
     let files = files_of(staged.path(), Path::new(""))?;
+    let mut folders = BTreeSet::new();
     for file in &files {
-        if fs::metadata(dir.join(file)).is_ok_and(|there| !there.is_file()) {
-            let path = dir.join(file);
+        let path = dir.join(file);
+        if fs::metadata(&path).is_ok_and(|there| !there.is_file()) {
             return Err(StoreError::NotAFile { path }.into());
         }
-        if let Some(folder) = file.parent().filter(|p| !p.as_os_str().is_empty()) {
-            ensure_writable(&dir.join(folder))?;
-        }
+        folders.insert(folder_of(&path).to_owned());
     }
-    flush(staged.path())?;
+    for folder in folders.iter().filter(|folder| *folder != dir) {
+        ensure_writable(folder)?;
+    }
     let _at_work = AT_WORK.read();
     for name in stale {
         let path = dir.join(name);
@@ -44,7 +46,9 @@ pub fn write_together<E: From<StoreError>>(
         let path = dir.join(file);
         fs::rename(staged.path().join(file), &path).map_err(|e| StoreError::new(&path, e))?;
     }
-    flush(dir)?;
+    for folder in &folders {
+        flush_folder(folder).map_err(|e| StoreError::new(folder, e))?;
+    }
     Ok(())
 }
 
